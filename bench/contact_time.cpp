@@ -93,8 +93,8 @@ int print_answers(const char* name, std::vector<TimeOfContact>& answers) {
   std::size_t reached = 0;
   for (const TimeOfContact& answer : answers) {
     ++verdicts[static_cast<std::size_t>(answer.verdict)];
-    looks.push_back(answer.looks);
-    reached += answer.reached;
+    looks.push_back(answer.steps);
+    reached += (answer.outcome == Outcome::complete);
     if (answer.time.upper < INFINITY) widths.push_back(answer.time.upper - answer.time.lower);
   }
   std::sort(looks.begin(), looks.end());

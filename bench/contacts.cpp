@@ -48,7 +48,7 @@ void measure(const std::string& name, Pair& pair, const Options& options) {
   for (const double share : {1e-2, 1e-3, 1e-4}) {
     group.add("contacts, precision " + std::to_string(share), 1, [&, share] {
       const double precision = share * pair.surface.size();
-      return points_of(contacts(pair.first(), pair.second(), {.precision = precision, .threads = 1}));
+      return points_of(contacts(pair.first(), pair.second(), {.error = precision}, {.threads = 1}));
     });
   }
   group.run();

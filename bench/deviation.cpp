@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
         group.limit_rounds(5);
         const auto ask = [&](int threads) {
           const SurfaceBvh bvh(surface);
-          const Deviation d = deviation(bvh, candidate, {.absolute = precision * size, .threads = threads});
+          const Deviation d = deviation(bvh, candidate, {.absolute = precision * size}, {.threads = threads});
           return d.from_surface.distance.upper + d.from_candidate.distance.upper;
         };
         const double items = static_cast<double>(candidate.size());

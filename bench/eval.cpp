@@ -41,9 +41,9 @@ void print_errors(std::size_t face_count, int level) {
   std::array<Point3, 1> out;
   for (const OsdLimitSample& sample : osd_limit_samples(mesh, level)) {
     const bool irregular = extraordinary_corners(subject.surface().kind(sample.face)) > 0;
-    const BoundedPoint point = evaluator({sample.face.value(), 0, sample.at.u, sample.at.v});
+    const SurfacePoint point = evaluator({sample.face.value(), 0, sample.at.u, sample.at.v});
     bound = std::max(bound, point.error);
-    snug[irregular].all.push_back(distance(point.position, sample.point));
+    snug[irregular].all.push_back(distance(point.point, sample.point));
     surfaces.evaluate(sample.face.index(), std::array{sample.at}, out);
     bfr[irregular].all.push_back(distance(out[0], sample.point));
   }

@@ -27,9 +27,9 @@ std::vector<TriangleParameter> random_parameters(std::size_t count, bool triangu
 }
 
 // The same parameters on each of some faces, one face after the other.
-std::vector<SurfaceParameter> on_faces(const LimitSurface& surface, std::span<const PatchId> faces,
-                                       std::span<const TriangleParameter> at) {
-  std::vector<SurfaceParameter> places;
+std::vector<Place> on_faces(const LimitSurface& surface, std::span<const PatchId> faces,
+                            std::span<const TriangleParameter> at) {
+  std::vector<Place> places;
   for (const PatchId f : faces) {
     const std::uint32_t owner = surface.place(f).owner;
     for (const TriangleParameter& p : at) places.push_back({owner, 0, p.u, p.v});
@@ -37,7 +37,7 @@ std::vector<SurfaceParameter> on_faces(const LimitSurface& surface, std::span<co
   return places;
 }
 
-std::vector<SurfaceParameter> shuffled(std::vector<SurfaceParameter> places) {
+std::vector<Place> shuffled(std::vector<Place> places) {
   std::shuffle(places.begin(), places.end(), std::mt19937_64(6));
   return places;
 }
@@ -46,7 +46,7 @@ struct Faces {
   const LimitSurface& surface;
   std::vector<PatchId> patches;
   std::vector<TriangleParameter> at;
-  std::vector<SurfaceParameter> places;
+  std::vector<Place> places;
 };
 
 void add_snug(const Faces& faces, Group& group) {

@@ -73,7 +73,7 @@ class Pair {
     std::uniform_real_distribution<double> coordinate(-reach, reach);
     std::vector<Point3> points(count);
     for (Point3& p : points) p = {coordinate(random), coordinate(random), coordinate(random)};
-    const ClosestOptions how{.absolute = 1e-3};
+    const Precision how{.absolute = 1e-3};
     compare(
         "closest, " + where, count, 1, options,
         [&](std::size_t i) { return closest_point(inside_a_, points[i], how).distance.upper; },

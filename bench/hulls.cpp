@@ -22,8 +22,10 @@ int main(int argc, char** argv) {
                 "pair of hulls", options);
     for (const int threads : {1, 2}) {
       group.add("hulls, threads: " + std::to_string(threads), 1, [&, threads] {
-        const Hulls h = hulls(bvh, {.tolerance = share * surface.size(), .threads = threads});
-        return h.verified ? static_cast<double>(h.outer->triangles.size() + h.inner->triangles.size()) : NAN;
+        const Hulls h = hull(bvh, {.error = share * surface.size()}, {.threads = threads});
+        return h.outcome == Outcome::complete
+                   ? static_cast<double>(h.outer->triangles.size() + h.inner->triangles.size())
+                   : NAN;
       });
     }
     group.run();

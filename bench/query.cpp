@@ -53,7 +53,7 @@ PointQueries::PointQueries(const LimitSurface& surface, const SurfaceBvhOptions&
     : model_(surface, one_thread(options)), scratch_(model_) {}
 
 ClosestPoint PointQueries::closest(const Point3& to, double precision) {
-  ClosestOptions options;
+  Precision options;
   options.absolute = precision;
   return closest_point(scratch_, to, options);
 }

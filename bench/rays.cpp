@@ -63,10 +63,9 @@ double sum(std::span<const QuickHit> hits) {
 #ifdef SNUG_BENCH_EMBREE
 TriangleMesh triangles_of(const Surface& surface, double tolerance) {
   TessellateOptions options;
-  options.tolerance = tolerance;
+  options.error = tolerance;
   options.normals = false;
-  options.threads = 1;
-  const Tessellation found = tessellate(surface, options);
+  const Tessellation found = tessellate(surface, options, {.threads = 1});
   TriangleMesh mesh;
   mesh.points = found.positions;
   for (const auto& t : found.triangles) mesh.triangles.push_back({t[0], t[1], t[2]});
@@ -85,16 +84,16 @@ void measure_model(const std::string& file, const Options& options) {
   const Pixels pixels = pixels_of(surface, options);
   const double count = static_cast<double>(pixels.rays.size());
   const std::string name = file.substr(file.find_last_of('/') + 1);
-  const RayCaster caster(surface, pixels.size, 1);
+  const RayCaster caster(surface, pixels.size, {.threads = 1});
   std::vector<QuickHit> hits(pixels.rays.size());
   Group group(name + ", a ray a pixel", "ray", options);
   group.add("snug, RayCaster", count, [&] {
-    caster.cast(pixels.rays, hits, 1);
+    caster.cast(pixels.rays, hits, {.threads = 1});
     return sum(hits);
   });
-  group.add("snug, trace(), proved", count, [&] {
+  group.add("snug, ray(), proved", count, [&] {
     double total = 0;
-    for (const RayHits& found : trace(surface, pixels.rays, {.precision = pixels.size}, 1)) {
+    for (const RayHits& found : snug::ray(surface, pixels.rays, {.absolute = pixels.size}, {.threads = 1})) {
       total += found.certain_hit() ? found.hits.back().t.lower : 0;
     }
     return total;
@@ -123,7 +122,7 @@ void measure_model(const std::string& file, const Options& options) {
   Group first(name + ", the first picture: from the surface to its rays' hits", "picture", options);
   first.set_cold();
   first.add("snug", 1, [&] {
-    RayCaster(load(file), pixels.size, 1).cast(pixels.rays, hits, 1);
+    RayCaster(load(file), pixels.size, {.threads = 1}).cast(pixels.rays, hits, {.threads = 1});
     return sum(hits);
   });
   first.add("Embree", 1, [&] {

@@ -218,19 +218,18 @@ CollideOptions contacts() {
 }
 
 SceneCounts count(const Scene& scene, const CollideOptions& options, int threads = 1) {
-  return collide(
-      scene, options, [](const PairCollision&) {}, threads);
+  return collide(scene, options, [](const PairCollision&) {}, {.threads = threads});
 }
 double meeting(const SceneCounts& counts) { return static_cast<double>(counts.within + counts.intersecting); }
 
 std::vector<Surface> surfaces_of(const std::vector<Model>& models) {
   std::vector<Surface> surfaces;
-  for (const Model& model : models) surfaces.emplace_back(model.mesh, SurfaceOptions{.threads = 1});
+  for (const Model& model : models) surfaces.emplace_back(model.mesh, SurfaceOptions{}, Run{.threads = 1});
   return surfaces;
 }
 
 std::size_t near_pairs(const Scene& scene) {
-  SceneBroadPhase broad(scene, 0, false, 1);
+  SceneBroadPhase broad(scene, 0, false, {.threads = 1});
   std::size_t near = 0;
   for (std::vector<ScenePair> batch; !(batch = broad.next(16384)).empty();) near += batch.size();
   return near;
@@ -286,8 +285,8 @@ void measure_threads(const std::vector<Model>& models, const Options& options) {
 
 #ifdef SNUG_BENCH_FCL
 TriangleMesh triangles_of(const Model& model) {
-  const Tessellation fine = tessellate(Surface(model.mesh, {.threads = 1}),
-                                       {.tolerance = tolerance, .normals = false, .threads = 1});
+  const Tessellation fine = tessellate(Surface(model.mesh, {}, {.threads = 1}),
+                                       {.error = tolerance, .normals = false}, {.threads = 1});
   return {fine.positions, fine.triangles};
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/motion.h>
+#include <snug/geometry.h>
 
 #include "placements.h"
 

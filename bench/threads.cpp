@@ -95,8 +95,8 @@ void compare_surfaces(const Options& options, const ControlMesh& mesh, const Lim
       double sum = 0;
       BoundOptions how;
       how.level = level;
-      how.threads = threads;
-      bound(surface, how, [&](const PieceEnclosure& piece) { sum += piece.offset.radius; });
+      bound(surface, how, [&](const PieceEnclosure& piece) { sum += piece.offset.radius; },
+            {.threads = threads});
       return sum;
     });
   }
@@ -115,7 +115,8 @@ void compare_closest(const Options& options, const LimitSurface& surface) {
                     precision);
       compare(options, name, [&, precision](int threads) {
         double sum = 0;
-        for (const ClosestPoint& at : closest_points(model, points, {.absolute = precision}, threads)) {
+        for (const ClosestPoint& at :
+             closest_point(model, points, {.absolute = precision}, {.threads = threads})) {
           sum += at.distance.upper;
         }
         return sum;

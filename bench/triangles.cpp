@@ -40,8 +40,7 @@ std::size_t uniform_count(const SurfaceBvh& model, double tolerance, unsigned& l
   for (level = 0; level < 9; ++level) {
     const std::vector<Triangle> triangles = uniform(model.surface(), level);
     if (triangles.size() > 4'000'000) break;
-    const Deviation found =
-        deviation(model, triangles, {.absolute = tolerance / 64, .tolerance = tolerance, .threads = 0});
+    const Deviation found = deviation(model, triangles, {.absolute = tolerance / 64, .threshold = tolerance});
     if (std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper) <= tolerance) {
       return triangles.size();
     }
@@ -65,7 +64,7 @@ int main(int argc, char** argv) {
     const LimitSurface& surface = *made;
     const SurfaceBvh bvh(surface);
     const double tolerance = share * surface.size();
-    const Tessellation adaptive = tessellate(surface, {.tolerance = tolerance, .normals = false});
+    const Tessellation adaptive = tessellate(surface, {.error = tolerance, .normals = false});
     unsigned level = 0;
     const std::size_t count = uniform_count(bvh, tolerance, level);
     std::printf("# %s: %zu triangles within %g of the size, uniform %zu (level %u)", model.name.c_str(),
@@ -77,14 +76,14 @@ int main(int argc, char** argv) {
     std::printf("\n");
 
     const double fine = share / 10 * surface.size();
-    const std::size_t many = tessellate(surface, {.tolerance = fine, .normals = false}).triangles.size();
+    const std::size_t many = tessellate(surface, {.error = fine, .normals = false}).triangles.size();
     Group rates(
         model.name + ", triangles within " + std::to_string(share / 10) + " of the size, proof included",
         "triangle", options);
     rates.limit_rounds(5);
     for (const int threads : {1, 2}) {
       rates.add("tessellate, threads: " + std::to_string(threads), static_cast<double>(many), [&, threads] {
-        const Tessellation t = tessellate(surface, {.tolerance = fine, .normals = false, .threads = threads});
+        const Tessellation t = tessellate(surface, {.error = fine, .normals = false}, {.threads = threads});
         return t.error_bound + static_cast<double>(t.triangles.size());
       });
     }

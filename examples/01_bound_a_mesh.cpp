@@ -15,11 +15,11 @@ int main(int argc, char** argv) {
   try {
     const snug::Surface surface = snug::load(argv[1]);
     const auto ignore = [](const snug::PatchEnclosure&) {};
-    const snug::BoundSummary summary = snug::bound(surface, {.tolerance = 0.01 * surface.size()}, ignore);
+    const snug::BoundSummary summary = snug::bound(surface, {.error = 0.01 * surface.size()}, ignore);
     std::printf("%zu faces: %llu offset triangles contain the surface, largest radius %g\n",
                 surface.mesh().face_count(), static_cast<unsigned long long>(summary.count),
                 summary.max_radius);
-    return summary.reached ? 0 : 5;
+    return summary.outcome == snug::Outcome::complete ? 0 : 5;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -48,12 +48,11 @@ int main() {
     const auto add_to_box = [&](const snug::PatchEnclosure& piece) {
       for (const snug::Box3& corner : piece.interval.corner) box.add(corner);
     };
-    const snug::BoundSummary summary =
-        snug::bound(surface, {.tolerance = 0.001 * surface.size()}, add_to_box);
+    const snug::BoundSummary summary = snug::bound(surface, {.error = 0.001 * surface.size()}, add_to_box);
     std::printf("%zu faces: %llu enclosures contain the surface; its x lies between %g and %g\n",
                 surface.mesh().face_count(), static_cast<unsigned long long>(summary.count), box.lower.x,
                 box.upper.x);
-    return summary.reached ? 0 : 5;
+    return summary.outcome == snug::Outcome::complete ? 0 : 5;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     // Random points around it, and the limit points closest to them.
     std::vector<snug::Point3> probes(1000);
     columns(probes).setRandom();
-    const std::vector<snug::ClosestPoint> answers = snug::closest_points(surface, probes, {.relative = 1e-6});
+    const std::vector<snug::ClosestPoint> answers = snug::closest_point(surface, probes, {.relative = 1e-6});
     std::vector<snug::Point3> closest;
     for (const snug::ClosestPoint& answer : answers) closest.push_back(answer.point);
 

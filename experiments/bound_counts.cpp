@@ -126,7 +126,7 @@ PieceCount count_pieces(const CurveSet& curves, BoundWay way, const CountOptions
   BoundingPoints scratch;
   const auto size_of = [&](const CurvePiece& piece) -> Size {
     if (way == BoundWay::control_box) return size_of_box(control_box(piece, scratch), piece.error, back);
-    const std::array<LimitPoint, 2> ends = limit_ends(piece);
+    const std::array<RelativePoint, 2> ends = limit_ends(piece);
     bounding_points(piece, scratch);
     const OffsetSegment offset = offset_segment(scratch, {ends[0].relative, ends[1].relative});
     return {unscaled(offset, back).radius, offset.radius <= 2 * offset.rounding};

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <experiments/bound_source.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/surface/curve_set.h>
 #include <snug/surface/limit_surface.h>
 

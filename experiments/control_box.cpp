@@ -15,7 +15,7 @@ void control_points(const Patch& patch, BoundingPoints& out) {
 void control_points(const CurvePiece& piece, BoundingPoints& out) {
   out.restart(piece.origin);
   const auto add = [&](const Vector3& point, double error) { out.add({&point, 1}, error, max_abs(point)); };
-  const std::array<LimitPoint, 2> ends = limit_ends(piece);
+  const std::array<RelativePoint, 2> ends = limit_ends(piece);
   const std::span<const Vector3> controls = piece.controls();
   for (std::size_t i = 0; i < controls.size(); ++i) {
     const bool first = piece.ghost[0] && i == 0, last = piece.ghost[1] && i + 1 == controls.size();

@@ -8,7 +8,7 @@
 
 #include <experiments/bound_source.h>
 #include <experiments/corner_nets.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/surface/limit_surface.h>
 
 /// How fast enclosures shrink as a patch is split towards its extraordinary corner. An experiment: the

@@ -41,7 +41,7 @@ std::array<Thicknesses, 2> thicknesses(const CurveSet& curves, EdgeId edge, unsi
   BoundingPoints points;
   for (unsigned level = 0; level <= levels; ++level, piece = split(piece, 0)) {
     bounding_points(piece, points);
-    const std::array<LimitPoint, 2> limits = limit_ends(piece);
+    const std::array<RelativePoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
     const OffsetSegment offset = offset_segment(points, ends);
     const std::array<double, 2> value{offset.radius, thickness(interval_simplex<2>(points, ends))};

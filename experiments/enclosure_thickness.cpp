@@ -63,7 +63,7 @@ Measured measure(BoundsCache& library, const Patch& patch, int steps, BoundingPo
     for (int i = 0; i + j <= steps; ++i) {
       TriangleParameter at{static_cast<double>(i) / steps, static_cast<double>(j) / steps};
       at.v = std::min(at.v, 1 - at.u);
-      const LimitPoint point = limit_point(patch, at);
+      const RelativePoint point = limit_point(patch, at);
       const double outside = distance_outside(prism, patch.origin + point.relative);
       if (outside > 4 * point.error + 1e-12) result.outside = std::max(result.outside, outside);
     }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <experiments/volume_tree.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/surface/limit_surface.h>
 
 /// The measurements behind the dissertation's tables 5.1 to 5.3: triangles, creation, queries in rooms; and of

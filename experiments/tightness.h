@@ -7,8 +7,8 @@
 #include <experiments/bound_source.h>
 #include <experiments/corner_nets.h>
 #include <snug/geometry/triangle.h>
-#include <snug/monitor.h>
 #include <snug/patch/patch.h>
+#include <snug/run.h>
 
 /// How much larger radii are than they had to be. An experiment: nothing here is a bound of a surface.
 namespace snug {

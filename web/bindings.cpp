@@ -56,13 +56,15 @@ std::optional<T> option(const val& options, const char* name) {
   if (!given(options, name)) return {};
   return options[name].as<T>();
 }
-std::uint64_t budget_of(const val& options, std::uint64_t usual) {
-  const std::optional<double> budget = option<double>(options, "budget");
-  if (!budget) return usual;
-  if (!(*budget >= 0 && *budget <= 0x1p53)) {
-    throw InputError(InputProblem::value, "budget: give a whole number that is not negative");
+Run run_of(const val& options, std::optional<std::uint64_t> usual = {}) {
+  Run run{.threads = 1, .max_splits = usual};
+  const std::optional<double> splits = option<double>(options, "maxSplits");
+  if (!splits) return run;
+  if (!(*splits >= 0 && *splits <= 0x1p53)) {
+    throw InputError(InputProblem::value, "maxSplits: give a whole number that is not negative");
   }
-  return static_cast<std::uint64_t>(*budget);
+  run.max_splits = static_cast<std::uint64_t>(*splits);
+  return run;
 }
 
 const char* name_of_problem(InputProblem problem) {
@@ -144,7 +146,6 @@ class Part {
  private:
   Surface made(const std::string& bytes, const std::string& name, const val& options) {
     SurfaceOptions how;
-    how.threads = 1;
     how.tight = option<bool>(options, "tight").value_or(false);
     if (const auto word = option<std::string>(options, "scheme"); word && *word != "auto") {
       how.scheme = named<Scheme>(*word, scheme_count, "scheme", [](Scheme s) { return name_of(s); });
@@ -163,7 +164,7 @@ class Part {
     try {
       if (const auto distance = option<double>(options, "weld")) weld(mesh, *distance);
       if (sharp) sharpen(mesh, *sharp);
-      return Surface(std::move(mesh), how);
+      return Surface(std::move(mesh), how, {.threads = 1});
     } catch (const InputError& error) {
       throw InputError(error.problem(), name + ": " + error.what());
     }
@@ -233,14 +234,14 @@ val make_pose(const val& parts) {
 
 // Answers.
 
-val places_of(const std::array<const PlacedSurface*, 2>& sides, const WitnessPlaces& places) {
+val places_of(const std::array<const PlacedSurface*, 2>& sides, const WitnessPoints& points) {
   val list = val::array();
   for (std::size_t s = 0; s < 2; ++s) {
-    if (!places[s]) {
+    if (!points[s].at) {
       list.set(s, val::null());
       continue;
     }
-    const SurfaceParameter& at = *places[s];
+    const Place& at = *points[s].at;
     val place = val::object();
     place.set("owner", at.owner);
     place.set("corner", at.corner);
@@ -254,11 +255,13 @@ val places_of(const std::array<const PlacedSurface*, 2>& sides, const WitnessPla
   return list;
 }
 
-val pair_of(const std::array<Point3, 2>& points) {
+// The fields of witnesses; null where there are none.
+void add_witness(val& result, const std::array<const PlacedSurface*, 2>& sides, const WitnessPoints* points) {
   val list = val::array();
-  list.set(0, array_of(points[0]));
-  list.set(1, array_of(points[1]));
-  return list;
+  for (std::size_t s = 0; points != nullptr && s < 2; ++s) list.set(s, array_of((*points)[s].point));
+  result.set("witness", points ? list : val::null());
+  result.set("witnessError", points ? val(std::max((*points)[0].error, (*points)[1].error)) : val::null());
+  result.set("witnessAt", points ? places_of(sides, *points) : val::null());
 }
 
 void add_stats(val& result, const SearchStats& stats) {
@@ -270,8 +273,8 @@ void add_stats(val& result, const SearchStats& stats) {
   result.set("stats", list);
 }
 
-val inner_of(const std::optional<std::size_t>& inner) {
-  return inner ? val(static_cast<unsigned>(*inner)) : val::null();
+val contained_of(const std::optional<std::size_t>& side) {
+  return side ? val(static_cast<unsigned>(*side)) : val::null();
 }
 
 val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
@@ -282,15 +285,13 @@ val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
     how.tolerance = option<double>(options, "tolerance");
     how.margin = option<double>(options, "margin").value_or(0);
     how.solid = option<bool>(options, "solid").value_or(false);
-    how.budget = budget_of(options, how.budget);
-    const Collision answer = collide(a, b, how);
+    const Collision answer = collide(a, b, how, run_of(options));
     val result = val::object();
     result.set("verdict", std::string(name_of(answer.verdict)));
+    result.set("outcome", std::string(name_of(answer.outcome)));
     result.set("distance", array_of(answer.distance));
-    result.set("witness", answer.witness ? pair_of(*answer.witness) : val::null());
-    result.set("witnessError", answer.witness ? val(answer.witness_error) : val::null());
-    result.set("witnessAt", answer.witness ? places_of({&a, &b}, answer.at) : val::null());
-    result.set("inner", inner_of(answer.inner));
+    add_witness(result, {&a, &b}, answer.witness ? &*answer.witness : nullptr);
+    result.set("contained", contained_of(answer.contained));
     add_stats(result, answer.stats);
     return result;
   });
@@ -301,18 +302,15 @@ val distance_of_parts(const Part& part_a, const Part& part_b, const val& options
     const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
     const PlacedSurface b(part_b.surface(), motion_of(options["poseB"]));
     DistanceOptions how;
-    how.absolute = option<double>(options, "precision");
+    how.absolute = option<double>(options, "absolute");
     how.relative = option<double>(options, "relative");
     how.solid = option<bool>(options, "solid").value_or(false);
-    how.budget = budget_of(options, how.budget);
-    const Distance answer = distance(a, b, how);
+    const Distance answer = distance(a, b, how, run_of(options));
     val result = val::object();
-    result.set("reached", answer.reached);
+    result.set("outcome", std::string(name_of(answer.outcome)));
     result.set("distance", array_of(answer.distance));
-    result.set("witness", pair_of(answer.witness));
-    result.set("witnessError", answer.witness_error);
-    result.set("witnessAt", places_of({&a, &b}, answer.at));
-    result.set("inner", inner_of(answer.inner));
+    add_witness(result, {&a, &b}, &answer.witness);
+    result.set("contained", contained_of(answer.contained));
     add_stats(result, answer.stats);
     return result;
   });
@@ -322,13 +320,13 @@ val penetration_of_parts(const Part& part_a, const Part& part_b, const val& opti
   return guarded([&] {
     PenetrationOptions how;
     how.relative = option<double>(options, "relative").value_or(how.relative);
-    how.budget = budget_of(options, how.budget);
-    const Penetration answer = penetration({part_a.surface(), motion_of(options["poseA"])},
-                                           {part_b.surface(), motion_of(options["poseB"])}, how);
+    const Penetration answer =
+        penetration({part_a.surface(), motion_of(options["poseA"])},
+                    {part_b.surface(), motion_of(options["poseB"])}, how, run_of(options));
     val result = val::object();
     result.set("depth", array_of(answer.depth));
     result.set("translation", array_of(answer.translation));
-    result.set("reached", answer.reached);
+    result.set("outcome", std::string(name_of(answer.outcome)));
     return result;
   });
 }
@@ -336,31 +334,30 @@ val penetration_of_parts(const Part& part_a, const Part& part_b, const val& opti
 val closest_to(const Part& part, const val& point, const val& options) {
   return guarded([&] {
     const Vector3 to = vector_of(point, "point");
-    ClosestOptions how;
-    how.absolute = option<double>(options, "precision");
+    Precision how;
+    how.absolute = option<double>(options, "absolute");
     how.relative = option<double>(options, "relative");
-    how.budget = budget_of(options, how.budget);
     const auto write = [](const ClosestPoint& answer) {
       val result = val::object();
       result.set("distance", array_of(answer.distance));
-      result.set("reached", answer.reached);
+      result.set("outcome", std::string(name_of(answer.outcome)));
       result.set("point", array_of(answer.point));
-      result.set("pointError", answer.point_error);
+      result.set("error", answer.error);
       val place = val::object();
-      place.set("owner", answer.at.owner);
-      place.set("corner", answer.at.corner);
-      place.set("u", answer.at.u);
-      place.set("v", answer.at.v);
+      place.set("owner", answer.at->owner);
+      place.set("corner", answer.at->corner);
+      place.set("u", answer.at->u);
+      place.set("v", answer.at->v);
       result.set("at", place);
       return result;
     };
     if (!option<bool>(options, "signed").value_or(false)) {
-      return write(closest_point(part.surface(), {to.x, to.y, to.z}, how));
+      return write(closest_point(part.surface(), {to.x, to.y, to.z}, how, run_of(options)));
     }
-    const SignedDistance answer = signed_distance(part.surface(), {to.x, to.y, to.z}, how);
+    const SignedDistance answer = signed_distance(part.surface(), {to.x, to.y, to.z}, how, run_of(options));
     val result = write(answer.nearest);
     result.set("distance", array_of(answer.distance));
-    result.set("reached", answer.reached);
+    result.set("outcome", std::string(name_of(answer.outcome)));
     return result;
   });
 }
@@ -394,12 +391,12 @@ val sampled(const Part& part, unsigned level) {
   return guarded([&] {
     const Surface& surface = part.surface();
     const bool triangular = has_triangles(surface.scheme());
-    const PatchBounds bounds(surface, 1);
+    const PatchBounds bounds(surface, {.threads = 1});
     const auto patches = bounds.patches();
     require_count(std::ldexp(static_cast<double>(patches.size()), static_cast<int>(2 * level)), 4e6,
                   "triangles");
     const std::uint32_t steps = 1u << level, points = (steps + 1) * (steps + 2) / 2;
-    std::vector<SurfaceParameter> at;
+    std::vector<Place> at;
     std::vector<std::uint32_t> triangles;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       const auto first = static_cast<std::uint32_t>(p) * points;
@@ -408,7 +405,7 @@ val sampled(const Part& part, unsigned level) {
         for (std::uint32_t i = 0; i + j <= steps; ++i, ++next) {
           const double s = std::ldexp(i, -static_cast<int>(level)),
                        t = std::ldexp(j, -static_cast<int>(level));
-          SurfaceParameter place{patches[p].owner, patches[p].part / 2, s, t};
+          Place place{patches[p].owner, patches[p].part / 2, s, t};
           // c0 c1 c2 of the quad, or c2 c3 c0.
           if (!triangular && patches[p].part % 2 == 0) place.u = s + t;
           if (!triangular && patches[p].part % 2 == 1) {
@@ -424,7 +421,7 @@ val sampled(const Part& part, unsigned level) {
       }
     }
     std::vector<float> positions(3 * at.size()), normals(3 * at.size());
-    const double error = evaluate(surface, at, FloatPoints{positions, normals}, 1);
+    const double error = evaluate(surface, at, FloatPoints{positions, normals}, {.threads = 1});
     val result = val::object();
     result.set("positions", copied(positions));
     result.set("normals", copied(normals));
@@ -450,32 +447,28 @@ std::vector<double> flat_points(const std::vector<Triple>& points) {
 val tessellated(const Part& part, const val& options) {
   return guarded([&] {
     TessellateOptions how;
-    how.tolerance = option<double>(options, "tolerance");
+    how.error = option<double>(options, "error");
     how.max_edge = option<double>(options, "maxEdge");
     how.max_angle = option<double>(options, "maxAngle");
     if (const auto most = option<double>(options, "maxTriangles")) {
       how.max_triangles = static_cast<std::uint64_t>(*most);
     }
-    how.budget = budget_of(options, 4'000'000);
-    how.threads = 1;
-    const Tessellation made = tessellate(part.surface(), how);
+    const Tessellation made = tessellate(part.surface(), how, run_of(options, 4'000'000));
     val result = val::object();
     result.set("positions", copied(flat_points(made.positions)));
     result.set("normals", copied(flat_points(made.normals)));
     result.set("triangles", copied(flat(made.triangles)));
     result.set("owners", copied(made.owners));
     result.set("errorBound", made.error_bound);
-    result.set("reached", made.reached);
+    result.set("outcome", std::string(name_of(made.outcome)));
     return result;
   });
 }
 
 BoundOptions bound_options(const val& options) {
   BoundOptions how;
-  how.tolerance = option<double>(options, "tolerance");
+  how.error = option<double>(options, "error");
   how.level = static_cast<unsigned>(option<double>(options, "level").value_or(0));
-  how.budget = budget_of(options, how.budget);
-  how.threads = 1;
   return how;
 }
 
@@ -485,8 +478,9 @@ val enclosures(const Part& part, const val& options) {
     std::vector<double> base, radius, lower, upper;
     val pieces = val::array();
     const auto add = [](std::vector<double>& to, const Point3& p) { to.insert(to.end(), {p.x, p.y, p.z}); };
-    const BoundSummary summary =
-        bound(part.surface(), bound_options(options), [&](const PatchEnclosure& piece) {
+    const BoundSummary summary = bound(
+        part.surface(), bound_options(options),
+        [&](const PatchEnclosure& piece) {
           owners.push_back(piece.patch.owner);
           parts.push_back(piece.patch.part);
           levels.push_back(piece.level);
@@ -497,11 +491,12 @@ val enclosures(const Part& part, const val& options) {
             add(lower, box.lower);
             add(upper, box.upper);
           }
-        });
+        },
+        run_of(options));
     val result = val::object();
     result.set("count", static_cast<double>(summary.count));
     result.set("maxRadius", summary.max_radius);
-    result.set("reached", summary.reached);
+    result.set("outcome", std::string(name_of(summary.outcome)));
     result.set("owners", copied(owners));
     result.set("parts", copied(parts));
     result.set("levels", copied(levels));
@@ -518,8 +513,8 @@ val enclosures(const Part& part, const val& options) {
 val enclosure_shapes(const Part& part, const val& options) {
   return guarded([&] {
     const BoundOptions how = bound_options(options);
-    const PatchBounds bounds(part.surface(), 1);
-    if (!how.tolerance) {
+    const PatchBounds bounds(part.surface(), {.threads = 1});
+    if (!how.error) {
       require_count(std::ldexp(static_cast<double>(bounds.patches().size()), static_cast<int>(2 * how.level)),
                     40'000, "enclosures");
     }
@@ -528,22 +523,25 @@ val enclosure_shapes(const Part& part, const val& options) {
     const auto add = [](std::vector<float>& to, const Point3& p) {
       to.insert(to.end(), {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
     };
-    const BoundSummary summary = bound(part.surface(), how, [&](const PatchEnclosure& piece) {
-      const Polyhedron hull = hull_of_boxes(piece.interval);
-      for (const auto& facet : hull.facets) {
-        for (std::size_t i = 0; i < facet.size(); ++i) {
-          const std::size_t next = (i + 1) % facet.size();
-          if (facet[i] < facet[next]) {
-            add(edges, hull.points[facet[i]]);
-            add(edges, hull.points[facet[next]]);
+    const BoundSummary summary = bound(
+        part.surface(), how,
+        [&](const PatchEnclosure& piece) {
+          const Polyhedron hull = hull_of_boxes(piece.interval);
+          for (const auto& facet : hull.facets) {
+            for (std::size_t i = 0; i < facet.size(); ++i) {
+              const std::size_t next = (i + 1) % facet.size();
+              if (facet[i] < facet[next]) {
+                add(edges, hull.points[facet[i]]);
+                add(edges, hull.points[facet[next]]);
+              }
+              if (i == 0 || next == 0) continue;
+              for (const std::size_t corner : {std::size_t{0}, i, next})
+                add(positions, hull.points[facet[corner]]);
+            }
           }
-          if (i == 0 || next == 0) continue;
-          for (const std::size_t corner : {std::size_t{0}, i, next})
-            add(positions, hull.points[facet[corner]]);
-        }
-      }
-      ++count;
-    });
+          ++count;
+        },
+        run_of(options));
     val result = val::object();
     result.set("count", count);
     result.set("maxRadius", summary.max_radius);
@@ -566,16 +564,14 @@ val one_hull(const std::optional<Hull>& hull) {
 val hulls_of(const Part& part, const val& options) {
   return guarded([&] {
     HullOptions how;
-    how.tolerance = option<double>(options, "tolerance").value_or(0.01 * part.size());
+    how.error = option<double>(options, "error");
     how.inner = option<bool>(options, "inner").value_or(true);
     how.outer = option<bool>(options, "outer").value_or(true);
-    how.budget = budget_of(options, 1'000'000);
-    how.threads = 1;
-    const Hulls made = hulls(part.surface(), how);
+    const Hulls made = hull(part.surface(), how, run_of(options));
     val result = val::object();
     result.set("inner", one_hull(made.inner));
     result.set("outer", one_hull(made.outer));
-    result.set("verified", made.verified);
+    result.set("outcome", std::string(name_of(made.outcome)));
     result.set("closed", made.closed);
     val problems = val::array();
     for (const HullProblem& each : made.problems) {
@@ -593,7 +589,7 @@ val hulls_of(const Part& part, const val& options) {
 
 val limit_to_faces_of(const Part& part) {
   return guarded([&] {
-    const std::optional<double> apart = limit_to_faces(part.surface(), 1);
+    const std::optional<double> apart = limit_to_faces(part.surface(), {.threads = 1});
     return apart ? val(*apart) : val::null();
   });
 }
@@ -602,12 +598,11 @@ val measured(const Part& part, const val& options) {
   return guarded([&] {
     MeasureOptions how;
     how.relative = option<double>(options, "relative");
-    how.threads = 1;
-    const Measures measures = measure(part.surface(), how);
+    const Measures measures = measure(part.surface(), how, run_of(options));
     val result = val::object();
     result.set("area", array_of(measures.area));
     result.set("volume", measures.volume ? array_of(*measures.volume) : val::null());
-    result.set("reached", measures.reached);
+    result.set("outcome", std::string(name_of(measures.outcome)));
     return result;
   });
 }
@@ -645,7 +640,7 @@ EMSCRIPTEN_BINDINGS(snug) {
   emscripten::function("tessellate", &tessellated);
   emscripten::function("enclosures", &enclosures);
   emscripten::function("enclosureShapes", &enclosure_shapes);
-  emscripten::function("hulls", &hulls_of);
+  emscripten::function("hull", &hulls_of);
   emscripten::function("limitToFaces", &limit_to_faces_of);
   emscripten::function("measure", &measured);
   emscripten::function("textAtMost", &text_at_most);

@@ -36,7 +36,7 @@ std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options,
                             const std::optional<Length>& tolerance, std::string& scheme,
                             const WorkMonitor& monitor) {
   std::vector<Row> rows;
-  CountOptions how{.level = static_cast<unsigned>(options.level.value_or(0)), .budget = options.budget};
+  CountOptions how{.level = static_cast<unsigned>(options.level.value_or(0)), .budget = options.max_splits};
   if (asks_for_curves("bounds", mesh, options.mesh, options, options.degree)) {
     scheme = "curve";
     naming(options.mesh, [&] {
@@ -125,7 +125,8 @@ Command bounds_command() {
   list.add(Group::own, "--level N", &options->level, "Or split every patch N times, 0 to 12")
       .between(0, 12)
       .excludes("--tolerance");
-  list.add(Group::own, "--budget N", &options->budget, "Split at most N patches, by each method")
+  list.add(Group::own, "--max-splits N", &options->max_splits, "Split at most N patches, by each method")
+      .formerly("--budget")
       .between(0, std::uint64_t{1} << 40);
   add_degree_option(list, options->degree);
   add_common_options(list, *options);

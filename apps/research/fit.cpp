@@ -35,7 +35,7 @@ struct Options : CommonOptions {
 // Points, and the places on the surface that are to come near them: given, or the closest ones.
 struct Samples {
   std::vector<Point3> points;
-  std::vector<SurfaceParameter> at;
+  std::vector<Place> at;
   bool given = false;
   bool reached = true;  // are closest ones as near as they get, or did the budget end some?
 };
@@ -76,7 +76,7 @@ Residual residual_of(const LimitSurface& surface, const Samples& samples, int th
   std::vector<double> distances;
   const std::vector<SurfacePoint> reached = evaluate(surface, samples.at, threads);
   for (std::size_t i = 0; i < reached.size(); ++i) {
-    const Vector3 gap = samples.points[i] - reached[i].position;
+    const Vector3 gap = samples.points[i] - reached[i].point;
     distances.push_back(std::hypot(gap.x, gap.y, gap.z));
     result.max = std::max(result.max, distances.back());
   }
@@ -91,14 +91,13 @@ Residual residual_of(const LimitSurface& surface, const Samples& samples, int th
 void assign(const LimitSurface& surface, Samples& samples, const Options& options,
             const WorkMonitor& monitor) {
   samples.reached = true;
-  ClosestOptions wanted;
+  Precision wanted;
   wanted.absolute = 1e-6 * surface.size();
-  wanted.budget = options.budget;
   const SurfaceBvh model(surface, {}, monitor);
   samples.at.clear();
-  for (const ClosestPoint& found : closest_points(model, samples.points, wanted, options.threads, monitor)) {
-    samples.at.push_back(found.at);
-    samples.reached &= found.reached;
+  for (const ClosestPoint& found : closest_point(model, samples.points, wanted, run_of(options, monitor))) {
+    samples.at.push_back(*found.at);
+    samples.reached &= found.outcome == Outcome::complete;
   }
 }
 
@@ -183,7 +182,7 @@ Fit fitted(const Fit& before, const std::optional<MeshKernel>& kernel, const Opt
   require_regular(system, unknowns, rank, kernel, surface, options);
   std::vector<Vector3> gaps;
   const std::vector<SurfacePoint> reached = evaluate(surface, samples.at, options.threads);
-  for (std::size_t i = 0; i < reached.size(); ++i) gaps.push_back(samples.points[i] - reached[i].position);
+  for (std::size_t i = 0; i < reached.size(); ++i) gaps.push_back(samples.points[i] - reached[i].point);
   const std::vector<Vector3> moves = system.solve(gaps);
   ControlMesh mesh = surface.mesh();
   for (std::size_t v = 0; v < unknowns; ++v) {
@@ -273,7 +272,8 @@ ExitStatus run(const Options& options) {
                     options.output, mesh.vertex_count(), found->samples.points.size(), found->residual.rms,
                     found->residual.max, found->rounds, found->rounds == 1 ? "" : "s"));
   }
-  if (!found->samples.reached) report.text("the budget ended some closest points; give a larger --budget");
+  if (!found->samples.reached)
+    report.text("the budget ended some closest points; give a larger --max-splits");
   return report.finish(found->samples.reached, {&file});
 }
 
@@ -296,7 +296,9 @@ Command fit_command() {
       .between(0, 1e6);
   list.add(Group::own, "--least-change", &options->least_change,
            "Among equally good fits, choose the smallest displacement");
-  list.add(Group::effort, "--budget N", &options->budget, "Split at most N pieces for each closest point")
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
+           "Split at most N pieces for each closest point")
+      .formerly("--budget")
       .between(1, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"fit",

@@ -25,8 +25,7 @@ Patch unit_nets(const LimitSurface& surface, PatchId p, std::size_t count, std::
 
 }  // namespace
 
-Stencils limit_weights(const LimitSurface& surface, std::span<const SurfaceParameter> at,
-                       const WorkMonitor& monitor) {
+Stencils limit_weights(const LimitSurface& surface, std::span<const Place> at, const WorkMonitor& monitor) {
   std::vector<std::size_t> order(at.size());  // those of one patch together
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto patch_of = [&](std::size_t i) { return std::tuple(at[i].owner, at[i].corner); };
@@ -38,7 +37,7 @@ Stencils limit_weights(const LimitSurface& surface, std::span<const SurfaceParam
   };
   std::vector<std::vector<Entry>> rows(at.size());
   std::vector<VertexId> control;
-  std::vector<SurfaceParameter> places;
+  std::vector<Place> places;
   std::vector<BoundedPoint> values;
   LimitEvaluator evaluator;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
@@ -47,7 +46,7 @@ Stencils limit_weights(const LimitSurface& surface, std::span<const SurfaceParam
     for (; end < order.size() && patch_of(order[end]) == patch_of(order[begin]); ++end) {
       places.push_back(at[order[end]]);
     }
-    const SurfaceParameter& place = places.front();
+    const Place& place = places.front();
     const PatchId p(surface.patches_of(place.owner).begin + 2 * std::size_t{place.corner});
     surface.control_vertices(p, control);
     values.resize(places.size());

@@ -11,7 +11,7 @@ namespace snug::command {
 ///
 /// Requires:  patch_at(surface, each place).
 /// Cost:      that of evaluating each place a third as often as its patch has control points.
-[[nodiscard]] Stencils limit_weights(const LimitSurface& surface, std::span<const SurfaceParameter> at,
+[[nodiscard]] Stencils limit_weights(const LimitSurface& surface, std::span<const Place> at,
                                      const WorkMonitor& monitor = {});
 
 }  // namespace snug::command

@@ -7,9 +7,9 @@
 #include <apps/snug/curve.h>
 #include <apps/snug/progress_bar.h>
 #include <fmt/core.h>
-#include <snug/error.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/independence/mesh_rank.h>
+#include <snug/run.h>
 
 #include "kernel_json.h"
 

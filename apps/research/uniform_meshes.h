@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <snug/mesh/control_mesh.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 /// The columns of uniform Loop meshes in the dissertation's tables: OpenSubdiv refines to the first level
 /// whose vertices are all within half the tolerance of their limit, FCL builds trees and answers. In the

@@ -22,7 +22,7 @@ struct Options : CommonOptions {
 
 using Weights = std::map<std::uint32_t, double>;  // of control points, by vertex
 
-Weights weights_at(const LimitSurface& surface, const SurfaceParameter& at) {
+Weights weights_at(const LimitSurface& surface, const Place& at) {
   const Stencils rows = limit_weights(surface, {&at, 1});
   const Stencils::Row row = rows.row(0);
   Weights sums;  // a vertex may come twice
@@ -30,8 +30,7 @@ Weights weights_at(const LimitSurface& surface, const SurfaceParameter& at) {
   return sums;
 }
 
-void write_row(Report& report, const Surface& surface, const SurfaceParameter& at,
-               const SurfacePoint& point) {
+void write_row(Report& report, const Surface& surface, const Place& at, const SurfacePoint& point) {
   const Weights weights = weights_at(surface.data()->limit(), at);
   if (report.json()) {
     JsonWriter& json = report.write();
@@ -54,7 +53,7 @@ ExitStatus run(const Options& options) {
     throw UsageError("weights: " + options.mesh + " is answered as curves; weights are those of surfaces");
   }
   const Surface surface = make_surface(std::move(mesh), options.mesh, options, options.scheme);
-  const auto places = options.at.empty() ? std::vector<SurfaceParameter>() : read_places(options.at, surface);
+  const auto places = options.at.empty() ? std::vector<Place>() : read_places(options.at, surface);
   Report report("weights", options);
   report.heads({options.mesh}, {surface.traits().name});
   report.text(fmt::format("# {} u v{}  vertex:weight ...", surface.traits().owner(),
@@ -62,12 +61,12 @@ ExitStatus run(const Options& options) {
   if (report.json()) report.write().key("points").begin_array();
   std::size_t count = 0;
   SurfaceEvaluator evaluator(surface.data()->limit());
-  const auto answer = [&](const SurfaceParameter& at) {
+  const auto answer = [&](const Place& at) {
     write_row(report, surface, at, evaluator(at));
     ++count;
   };
   naming(options.mesh, [&] {
-    for (const SurfaceParameter& at : places) answer(at);
+    for (const Place& at : places) answer(at);
     if (!options.at.empty()) return;
     ProgressBar bar("evaluating " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();

@@ -21,7 +21,7 @@ constexpr std::size_t max_facets = 4'000'000;
 struct Options : CommonOptions {
   std::string mesh;
   Degree degree;
-  std::string tolerance;
+  std::string error;
   std::string polyhedra;
   unsigned level = 0;
   bool normals = false;
@@ -102,7 +102,7 @@ class Polyhedra {
     if (mesh_.face_count() > max_facets) {
       throw InputError(
           InputProblem::refused,
-          fmt::format("--polyhedra: more than {} facets; give a larger --tolerance or a lower --level",
+          fmt::format("--polyhedra: more than {} facets; give a larger --error or a lower --level",
                       max_facets));
     }
   }
@@ -154,16 +154,16 @@ void write_bound_summary(Report& report, const BoundSummary& summary, const Boun
                          const std::string& found) {
   if (report.json()) {
     report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
-    report.write().field("reached", summary.reached).field("splits", summary.splits);
+    report.write().field("outcome", name_of(summary.outcome)).field("splits", summary.splits);
   }
   report.text(found + ", largest radius " + text_at_most(summary.max_radius, true));
-  if (summary.reached) return;
+  if (summary.outcome == Outcome::complete) return;
   report.text(
       fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
-                  how.tolerance ? "the tolerance" : "the level",
-                  summary.splits >= how.budget
-                      ? "the budget was spent, in the order of the mesh; give a larger --budget"
-                      : "60 levels or the precision of doubles are the limit; give a larger --tolerance"));
+                  how.error ? "the error" : "the level",
+                  summary.outcome == Outcome::budget_spent
+                      ? "the budget was spent, in the order of the mesh; give a larger --max-splits"
+                      : "60 levels or the precision of doubles are the limit; give a larger --error"));
 }
 
 ExitStatus run(const Options& options) {
@@ -172,11 +172,9 @@ ExitStatus run(const Options& options) {
   if (!options.polyhedra.empty()) require_writable(options.polyhedra);
   BoundOptions how;
   how.level = options.level;
-  how.budget = options.budget;
-  how.threads = options.threads;
   how.normals = options.normals;
   std::optional<Length> tolerance;
-  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
+  if (!options.error.empty()) tolerance = parse_length(options.error, "--error");
   ControlMesh mesh = load_mesh(options.mesh, options);
   std::optional<CurveSet> curves;
   std::optional<Surface> surface;
@@ -199,7 +197,7 @@ ExitStatus run(const Options& options) {
   BoundSummary summary;
   ConeCount cones;
   naming(options.mesh, [&] {
-    if (tolerance) how.tolerance = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
+    if (tolerance) how.error = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
     if (report.json()) report.write().key("enclosures").begin_array();
     ProgressBar bar("bounding " + options.mesh, options.quiet);
     const auto keep_curve = [&](const CurveEnclosure& piece) {
@@ -210,8 +208,9 @@ ExitStatus run(const Options& options) {
       if (options.normals) cones.add(piece.normals);
       if (!options.polyhedra.empty()) polyhedra.add(piece);
     };
-    summary =
-        curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
+    const WorkMonitor monitor = bar.monitor();
+    const Run run = run_of(options, monitor);
+    summary = curves ? bound(*curves, how, keep_curve, run) : bound(*surface, how, keep, run);
   });
   const std::string whole = curves ? fmt::format("{} edges contain the limit curves of degree {}",
                                                  curves->edge_count(), static_cast<int>(curves->degree()))
@@ -225,8 +224,8 @@ ExitStatus run(const Options& options) {
     file.emplace(options.polyhedra);
     write_polyhedra(polyhedra, options, *file, report);
   }
-  if (file) return report.finish(summary.reached, {&*file});
-  return report.finish(summary.reached);
+  if (file) return report.finish(summary.outcome == Outcome::complete, {&*file});
+  return report.finish(summary.outcome == Outcome::complete);
 }
 
 }  // namespace
@@ -236,12 +235,13 @@ Command bound_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Split until each radius is at most half of this; mesh units or percent (1%)");
+  list.add(Group::own, "--error LENGTH", &options->error,
+           "Split until each radius is at most half of this; mesh units or percent, such as 1%")
+      .formerly("--tolerance");
   list.add(Group::own, "--level N", &options->level,
            "Split every patch N times, 0 to 12; the first split of a polygon counts")
       .between(0, 12)
-      .excludes("--tolerance");
+      .excludes("--error");
   list.add(Group::own, "--polyhedra FILE", &options->polyhedra,
            "Also write the enclosures as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
   list.add(Group::own, "--normals", &options->normals, "Also enclose the normals of each piece in a cone");
@@ -251,7 +251,7 @@ Command bound_command() {
   return {"bound",
           Topic::one_surface,
           "Enclose a limit surface, or limit curves, in small sets",
-          {"snug bound pawn.obj --tolerance 0.5% --json"},
+          {"snug bound pawn.obj --error 0.5% --json"},
           std::move(list),
           [options] { return run(*options); }};
 }

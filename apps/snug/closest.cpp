@@ -1,4 +1,4 @@
-#include <snug/closest.h>
+#include <snug/distance.h>
 
 #include <cmath>
 
@@ -38,19 +38,20 @@ std::vector<Point3> read_points(const std::string& path) {
 struct Result {
   ClosestPoint nearest;
   std::optional<SignedDistance> with_sign;
-  [[nodiscard]] bool reached() const { return with_sign ? with_sign->reached : nearest.reached; }
+  [[nodiscard]] Outcome outcome() const { return with_sign ? with_sign->outcome : nearest.outcome; }
+  [[nodiscard]] bool reached() const { return outcome() == Outcome::complete; }
 };
 
-std::vector<Result> find(const Surface& surface, std::span<const Point3> points, const ClosestOptions& wanted,
+std::vector<Result> find(const Surface& surface, std::span<const Point3> points, const Precision& wanted,
                          const Options& options, const WorkMonitor& monitor) {
   std::vector<Result> results;
   results.reserve(points.size());
   if (options.with_sign) {
-    for (SignedDistance& found : signed_distances(surface, points, wanted, options.threads, monitor)) {
+    for (SignedDistance& found : signed_distance(surface, points, wanted, run_of(options, monitor))) {
       results.push_back({found.nearest, found});
     }
   } else {
-    for (ClosestPoint& found : closest_points(surface, points, wanted, options.threads, monitor)) {
+    for (ClosestPoint& found : closest_point(surface, points, wanted, run_of(options, monitor))) {
       results.push_back({found, {}});
     }
   }
@@ -86,8 +87,8 @@ void write_result(Report& report, const Surface& surface, const Result& result) 
         "{}  {} {} {}  {} {} {}{}",
         result.with_sign ? text_of_bounds(result.with_sign->distance.lower, result.with_sign->distance.upper)
                          : text_of_bounds(near.distance.lower, near.distance.upper),
-        near.point.x, near.point.y, near.point.z, near.at.owner, near.at.u, near.at.v,
-        surface.traits().triangular ? "" : fmt::format(" {}", near.at.corner)));
+        near.point.x, near.point.y, near.point.z, near.at->owner, near.at->u, near.at->v,
+        surface.traits().triangular ? "" : fmt::format(" {}", near.at->corner)));
     return;
   }
   JsonWriter& json = report.write();
@@ -98,8 +99,8 @@ void write_result(Report& report, const Surface& surface, const Result& result) 
       .value(near.distance.upper)
       .end_array();
   if (result.with_sign) write_sign(json, *result.with_sign);
-  json.field("reached", result.reached()).field("point", near.point).field("error", near.point_error);
-  write_place(json, surface, near.at);
+  json.field("outcome", name_of(result.outcome())).field("point", near.point).field("error", near.error);
+  write_place(json, surface, *near.at);
   json.end_object();
 }
 
@@ -115,21 +116,21 @@ ColumnTable table_of(const std::vector<Result>& results, const Surface& surface,
     columns.insert(columns.end(), {{"signed_lower", Type::real}, {"signed_upper", Type::real}});
   columns.push_back({surface.traits().owner(), Type::integer});
   if (has_corner) columns.push_back({"corner", Type::integer});
-  columns.insert(columns.end(), {{"u", Type::real}, {"v", Type::real}, {"reached", Type::flag}});
+  columns.insert(columns.end(), {{"u", Type::real}, {"v", Type::real}, {"complete", Type::flag}});
   ColumnTable table(std::move(columns), options.output);
   for (const Result& result : results) {
     const ClosestPoint& near = result.nearest;
-    for (const double x : {near.point.x, near.point.y, near.point.z, near.point_error, near.distance.lower,
-                           near.distance.upper}) {
+    for (const double x :
+         {near.point.x, near.point.y, near.point.z, near.error, near.distance.lower, near.distance.upper}) {
       table.add(x);
     }
     if (result.with_sign) {
       table.add(result.with_sign->distance.lower);
       table.add(result.with_sign->distance.upper);
     }
-    table.add(near.at.owner);
-    if (has_corner) table.add(near.at.corner);
-    for (const double x : {near.at.u, near.at.v, result.reached() ? 1.0 : 0.0}) table.add(x);
+    table.add(near.at->owner);
+    if (has_corner) table.add(near.at->corner);
+    for (const double x : {near.at->u, near.at->v, result.reached() ? 1.0 : 0.0}) table.add(x);
   }
   return table;
 }
@@ -151,20 +152,19 @@ ExitStatus finish_with_table(Report& report, const Options& options, const Surfa
   file.write(table.file());
   std::size_t missed = 0;
   for (const Result& result : results) missed += result.reached() ? 0 : 1;
-  if (report.json()) report.write().field("count", results.size()).field("reached", missed == 0);
+  if (report.json()) report.write().field("count", results.size()).field("complete", results.size() - missed);
   report.text(fmt::format("{}: {} closest points{}", options.output, results.size(),
                           missed == 0 ? "" : fmt::format(", {} wider than asked for", missed)));
   return report.finish(missed == 0, {&file});
 }
 
 ExitStatus run(const Options& options) {
-  const Length precision = parse_length(options.precision, "--precision", true);
+  const Length precision = parse_length(options.precision, "--absolute", true);
   const std::vector<Point3> points = read_points(options.points);
   const Surface surface = read_surface(options.mesh, options, options.scheme);
-  ClosestOptions wanted;
+  Precision wanted;
   wanted.absolute = precision.in_mesh_units(surface.size());
   wanted.relative = options.relative;
-  wanted.budget = options.budget;
   std::vector<Result> results;
   {
     ProgressBar bar("closest points", options.quiet);
@@ -176,7 +176,7 @@ ExitStatus run(const Options& options) {
   if (as_table) shown.output.clear();
   Report report("closest", shown);
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  if (report.json()) report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
+  if (report.json()) report.write().field("absolute", *wanted.absolute).field("relative", *wanted.relative);
   if (as_table) return finish_with_table(report, options, surface, results);
   if (report.json()) report.write().key("results").begin_array();
   report.text(fmt::format("# {}  x y z  {} u v{}",
@@ -196,8 +196,9 @@ Command closest_command() {
   list.add(Group::own, "--points FILE", &options->points,
            "File with one point per line, 'x y z'; text, CSV or a NumPy array (.npy); - for standard input")
       .required();
-  list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Largest width of a distance interval; mesh units, or percent of the mesh");
+  list.add(Group::own, "--absolute LENGTH", &options->precision,
+           "Largest width of a distance interval; mesh units, or percent of the mesh")
+      .formerly("--precision");
   list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the upper bound")
       .between(0, 1);
   list.add(Group::own, "--signed", &options->with_sign,

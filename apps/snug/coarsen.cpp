@@ -73,12 +73,14 @@ Tessellation part_of(const Tessellation& fine, const std::vector<unsigned int>& 
 
 }  // namespace
 
-Tessellation coarsened(const Surface& surface, TessellateOptions how, const WorkMonitor& monitor) {
-  const double tolerance = how.tolerance.value();
-  const WorkMonitor silent{.on_progress = {}, .stop = monitor.stop};
+Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run& run) {
+  const double tolerance = how.error.value();
+  const WorkMonitor quiet{.on_progress = {}, .stop = run.monitor->stop};
+  Run silent = run;
+  silent.monitor = &quiet;
   Tessellation best = tessellate(surface, how, silent);
   best.owners.clear();
-  if (!best.reached) return best;
+  if (best.outcome != Outcome::complete) return best;
 
   // Keeps it if it has fewer triangles and is near enough. Is it not farther than the tolerance, as far as known?
   const auto consider = [&](Tessellation mesh) {
@@ -90,8 +92,8 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Work
       triangles.push_back({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
     }
     const Deviation found =
-        deviation(surface, triangles,
-                  {.absolute = tolerance / 64, .tolerance = tolerance, .threads = how.threads}, silent);
+        deviation(surface, triangles, {.absolute = tolerance / 64, .threshold = tolerance},
+                  {.threads = run.threads, .monitor = &quiet});
     mesh.error_bound = std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper);
     const bool near = mesh.error_bound <= tolerance;
     if (near) best = std::move(mesh);
@@ -99,26 +101,26 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Work
   };
   int done = 0;
   for (const double share : shares) {
-    how.tolerance = share * tolerance;
+    how.error = share * tolerance;
     Tessellation fine;
     try {
       fine = share == 1 ? best : tessellate(surface, how, silent);
     } catch (const InputError&) {
       continue;  // too fine for the arithmetic
     }
-    if (!fine.reached) continue;
+    if (fine.outcome != Outcome::complete) continue;
     fine.owners.clear();
     const FloatMesh floats(fine);
     // Halving in logarithms: what is near enough goes below, what is not above.
     double low = min_share * tolerance, high = max_share * tolerance;
     if (share > 1 && !consider(fine)) high = low;
     for (int attempt = 0; attempt < max_attempts && low < high; ++attempt, ++done) {
-      monitor.report(done / static_cast<double>(shares.size() * max_attempts));
+      run.monitor->report(done / static_cast<double>(shares.size() * max_attempts));
       const double error = std::sqrt(low * high);
       (consider(part_of(fine, floats.simplified(error))) ? low : high) = error;
     }
   }
-  monitor.report(1);
+  run.monitor->report(1);
   return best;
 }
 

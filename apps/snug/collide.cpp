@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <snug/contacts.h>
 #include <support/atomic_file.h>
+#include <support/run.h>
 
 #include "contact_report.h"
 #include "length.h"
@@ -29,24 +30,18 @@ struct Options : PairOptions {
 };
 
 void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer) {
-  json.field("verdict", name_of(answer.verdict));
+  json.field("verdict", name_of(answer.verdict)).field("outcome", name_of(answer.outcome));
   json.key("distance").begin_array().value(answer.distance.lower);
   answer.distance.upper < INFINITY ? json.value(answer.distance.upper) : json.null();
-  json.end_array().key("witness");
-  if (answer.witness) {
-    json.begin_array().value((*answer.witness)[0]).value((*answer.witness)[1]).end_array();
-    json.field("witness_error", answer.witness_error);
-  } else {
-    json.null().key("witness_error").null();
-  }
-  write_places(json, sides, answer.witness ? &answer.at : nullptr);
-  write_inner(json, answer.inner);
+  json.end_array();
+  write_witness(json, sides, answer.witness ? &*answer.witness : nullptr);
+  write_inner(json, answer.contained);
   write_stats(json, answer.stats);
 }
 
 // How to decide more: where the budget was not spent, rounding is in the way.
 const char* advice(const Collision& answer, const CollideOptions& asked) {
-  if (answer.stats.splits >= asked.budget) return "give a larger --budget";
+  if (answer.outcome == Outcome::budget_spent) return "give a larger --max-splits";
   return *asked.tolerance > 0
              ? "rounding is in the way: give a larger --tolerance"
              : "surfaces that touch cannot be distinguished from surfaces one rounding apart: give a "
@@ -65,9 +60,9 @@ std::string sentence(const Collision& answer, const CollideOptions& asked) {
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
                          upper, asked.margin + *asked.tolerance);
     case Verdict::intersecting:
-      return answer.inner  ? "intersecting: proved, " + inner_sentence(*answer.inner)
-             : asked.solid ? "intersecting: proved, the solids have a point in common"
-                           : "intersecting: proved, the limit surfaces have a point in common";
+      return answer.contained ? "intersecting: proved, " + inner_sentence(*answer.contained)
+             : asked.solid    ? "intersecting: proved, the solids have a point in common"
+                              : "intersecting: proved, the limit surfaces have a point in common";
     case Verdict::undecided:
       break;
   }
@@ -100,17 +95,17 @@ std::string row(const Collision& answer) {
       text += " - - -";
       continue;
     }
-    const Point3& p = (*answer.witness)[side];
+    const Point3& p = (*answer.witness)[side].point;
     text += fmt::format(" {} {} {}", p.x, p.y, p.z);
   }
   return text;
 }
 
-ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& wanted,
-                     const WorkMonitor& monitor) {
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report,
+                     const CollideOptions& wanted, const WorkMonitor& monitor) {
+  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
   const auto ask = [&](const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace) {
-    Collision answer = collide(a, b, wanted, stop_only, workspace);
+    Collision answer = collide(a, b, wanted, run_of(options, quiet, &workspace));
     return PoseAnswer{
         .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_answer(json, sides, answer); },
         .row = row(answer),
@@ -131,10 +126,7 @@ void require_curves(const Options& options) {
 std::optional<Contacts> all_contacts(const Options& options, double tolerance, double precision,
                                      PairArguments& pair, const WorkMonitor& monitor) {
   if (!options.all) return std::nullopt;
-  return contacts(
-      pair.a(), pair.b(),
-      {.tolerance = tolerance, .precision = precision, .budget = options.budget, .threads = options.threads},
-      monitor);
+  return contacts(pair.a(), pair.b(), {.within = tolerance, .error = precision}, run_of(options, monitor));
 }
 
 // Fills the row, and writes the fields where they are wanted.
@@ -153,19 +145,18 @@ ExitStatus run_scene(const Options& options) {
   if (options.solid) run.require_closed();
   const SceneText& text = run.loaded().text;
   const Length tolerance = text.tolerance.value_or(parse_length(options.tolerance, "--tolerance", true));
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
   SceneQuestion question;
   question.key =
-      fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.budget);
+      fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.max_splits);
   question.margin = text.margin;
   question.all_pairs = options.all_pairs;
   question.header = "verdict lower upper ax ay az bx by bz";
   question.ask = [&](const ScenePair& pair, Workspace& workspace, SceneAnswer& answer, JsonWriter* json) {
     CollideOptions wanted;
     wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
-    wanted.budget = options.budget;
     wanted.solid = options.solid;
-    write_to(collide(run.scene(), pair, wanted, stop_only, workspace), run, pair, answer, json);
+    write_to(collide(run.scene(), pair, wanted, run_of(options, quiet, &workspace)), run, pair, answer, json);
   };
   question.separated = [&](const ScenePair& pair, SceneAnswer& answer, JsonWriter* json) {
     Collision apart;
@@ -184,14 +175,13 @@ ExitStatus run_scene(const Options& options) {
 ExitStatus run(const Options& options) {
   if (!options.scene.empty()) return run_scene(options);
   require_curves(options);
-  const Length precision = parse_length(options.precision, "--precision");
+  const Length precision = parse_length(options.precision, "--error");
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   const Length margin = parse_length(options.margin, "--margin", true);
   PairArguments pair(options);
   CollideOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
   wanted.margin = margin.in_mesh_units(pair.size());
-  wanted.budget = options.budget;
   wanted.solid = options.solid;
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
@@ -200,13 +190,14 @@ ExitStatus run(const Options& options) {
   Report report("collide", options);
   pair.write_heads(report);
   if (report.json()) report.write().field("tolerance", *wanted.tolerance).field("margin", wanted.margin);
-  if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
+  if (!options.poses.empty()) return run_poses(options, pair, report, wanted, monitor);
   const Sides sides{pair.a(), pair.b()};
-  Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
+  Collision answer = collide(pair.a(), pair.b(), wanted, run_of(options, monitor));
   std::optional<Penetration> depth;
-  if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
+  if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, {.monitor = &monitor});
   if (depth && depth->depth.lower > 0) {
     answer.verdict = Verdict::intersecting;
+    answer.outcome = Outcome::complete;
     answer.distance = {0, 0};
   }
   const std::optional<Contacts> all =
@@ -215,19 +206,21 @@ ExitStatus run(const Options& options) {
   if (all && !options.curves.empty()) write_curves(all->curves, curves.emplace(options.curves));
   if (report.json()) {
     write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
-    write_answer(report.write(), sides, answer);
+    Collision shown = answer;
+    if (all) shown.outcome = worse(answer.outcome, all->outcome);
+    write_answer(report.write(), sides, shown);
     if (depth) write_penetration(report.write(), *depth);
     if (all) write_contacts(report.write(), sides, *all);
   }
   report.text(sentence(answer, wanted));
   if (answer.witness) {
-    for (const std::string& line : witness_lines(sides, *answer.witness, answer.at)) {
+    for (const std::string& line : witness_lines(sides, *answer.witness)) {
       report.text(line);
     }
   }
   if (depth) {
     report.text(penetration_sentence(*depth));
-    if (!depth->reached) report.text("the bounds of the depth differ by more than 5 %");
+    if (depth->outcome != Outcome::complete) report.text("the bounds of the depth differ by more than 5 %");
   }
   if (all) {
     for (const std::string& line : contact_lines(sides, *all)) report.text(line);
@@ -237,8 +230,8 @@ ExitStatus run(const Options& options) {
   std::vector<AtomicFile*> files;
   if (curves) files.push_back(&*curves);
   const ExitStatus status =
-      report.finish(answer.verdict != Verdict::undecided && (!depth || depth->reached) &&
-                        (!all || (all->complete && all->reached)),
+      report.finish(answer.verdict != Verdict::undecided && (!depth || depth->outcome == Outcome::complete) &&
+                        (!all || all->outcome == Outcome::complete),
                     files);
   return options.exit_code ? status_of(answer.verdict) : status;
 }
@@ -265,9 +258,10 @@ Command collide_command() {
       .excludes("--poses")
       .excludes("--scene")
       .excludes("--solid");
-  list.add(Group::own, "--precision LENGTH", &options->precision,
+  list.add(Group::own, "--error LENGTH", &options->precision,
            "Largest distance between a curve and the line segments through its points; mesh units, or "
            "percent of the larger mesh")
+      .formerly("--precision")
       .needs("--all");
   list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file")
       .needs("--all");

@@ -8,6 +8,7 @@
 
 #include "completion.h"
 #include "length.h"
+#include "messages.h"
 #include "nearest.h"
 
 namespace snug::command {
@@ -26,7 +27,7 @@ bool is_option(const std::string& word) { return word.size() > 1 && word.front()
 
 const Option* find_option(const Command& command, const std::string& name) {
   for (const Option& option : command.options.all()) {
-    if (option.name == name && !option.is_argument()) return &option;
+    if (!option.is_argument() && (option.name == name || option.former == name)) return &option;
   }
   return nullptr;
 }
@@ -54,6 +55,13 @@ void refuse_elsewhere(const Program& program, const std::vector<std::string>& wo
   }
 }
 
+// Old names work for one version.
+void note_former(const std::vector<std::string>& words, const std::string& old_name,
+                 const std::string& name) {
+  if (std::find(words.begin(), words.end(), "--quiet") != words.end()) return;
+  print_message(fmt::format("note: {} is now {}; the old name leaves with the next version", old_name, name));
+}
+
 // Takes the option that words[i] names, and its value, from there: --name value, --name=value, -n value or -nvalue.
 // Returns the place of the last word taken.
 std::size_t take_option(const Command& command, const std::vector<std::string>& words, std::size_t i,
@@ -63,6 +71,7 @@ std::size_t take_option(const Command& command, const std::vector<std::string>& 
   const std::size_t end = is_long ? std::min(word.find('='), word.size()) : 2;
   const Option* option = find_option(command, word.substr(0, end));
   if (option == nullptr) refuse_option(command, is_long ? word.substr(0, end) : word);
+  if (option->former == word.substr(0, end)) note_former(words, option->former, option->name);
   std::vector<std::string>& values = given[option->name];
   const bool joined = end < word.size();
   if (option->is_flag()) {
@@ -128,9 +137,11 @@ Invocation read_command_line(const Program& program, const std::vector<std::stri
     return {nullptr, bash_completion(program)};
   }
   refuse_elsewhere(program, words);
-  const auto command = std::find_if(commands.begin(), commands.end(),
-                                    [&](const Command& candidate) { return first == candidate.name; });
+  const auto command = std::find_if(commands.begin(), commands.end(), [&](const Command& candidate) {
+    return first == candidate.name || (candidate.former != nullptr && first == candidate.former);
+  });
   const bool known = command != commands.end();
+  if (known && first != command->name) note_former(words, first, command->name);
   if (!known && !is_option(first)) {
     const std::string guess = did_you_mean(first, names_of(commands));
     throw UsageError("unknown command '" + first + "'" +

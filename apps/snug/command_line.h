@@ -20,6 +20,7 @@ struct Command {
   std::vector<std::string> examples;
   OptionList options;
   std::function<ExitStatus()> run;
+  const char* former = nullptr;  ///< the name that it had in the version before
 };
 
 /// A command of another program, or an option that is one.

@@ -89,8 +89,9 @@ void add_output_options(OptionList& list, CommonOptions& options) {
 }
 
 std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& options) {
-  Option& budget = list.add(Group::effort, "--budget N", &options.budget,
+  Option& budget = list.add(Group::effort, "--max-splits N", &options.max_splits,
                             "Split at most N patches, then report the bounds reached")
+                       .formerly("--budget")
                        .between(0, std::uint64_t{1} << 40);
   Option& bounds = list.add(Group::research, "--bounds WHAT", &options.bounds,
                             "How patches are bounded: by bounding rows, or by the dissertation's tables")
@@ -117,8 +118,14 @@ SurfaceOptions surface_options(const CommonOptions& options, const std::string& 
   }
   if (!options.boundary.empty()) result.boundary = value_in(boundary_rules, options.boundary);
   result.bounds = bound_method(options);
-  result.threads = options.threads;
   return result;
+}
+
+Run run_of(const CommonOptions& options, const WorkMonitor& monitor, Workspace* workspace) {
+  return {.threads = options.threads,
+          .monitor = &monitor,
+          .workspace = workspace,
+          .max_splits = options.max_splits};
 }
 
 Notes notes_for(const CommonOptions& options) {
@@ -147,12 +154,13 @@ ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
   static_cast<void>(weld_distance(options));  // what is wrong with options comes before any file
   static_cast<void>(sharp_angle(options));
   ProgressBar bar("reading " + path, options.quiet);
-  const ReadOptions reading{weld_distance(options), notes_for(options), bar.monitor()};
-  return prepared(read_mesh(path, reading), path, options);
+  const WorkMonitor monitor = bar.monitor();
+  const ReadOptions reading{weld_distance(options), notes_for(options)};
+  return prepared(read_mesh(path, reading, {.monitor = &monitor}), path, options);
 }
 
 ControlMesh mesh_of(std::string_view bytes, const std::string& path, const CommonOptions& options) {
-  const ReadOptions reading{weld_distance(options), notes_for(options), stopped_by_interrupts()};
+  const ReadOptions reading{weld_distance(options), notes_for(options)};
   return prepared(parse_mesh(bytes, path, reading), path, options);
 }
 
@@ -173,10 +181,10 @@ Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOpti
   refuse_curves(mesh, scheme, path);
   std::optional<Surface> surface;
   naming(path, [&] {
-    SurfaceOptions how = surface_options(options, scheme, mesh);
+    const SurfaceOptions how = surface_options(options, scheme, mesh);
     ProgressBar bar("preparing " + path, options.quiet);
-    how.monitor = bar.monitor();
-    surface.emplace(std::move(mesh), how);
+    const WorkMonitor monitor = bar.monitor();
+    surface.emplace(std::move(mesh), how, run_of(options, monitor));
   });
   note_smoothing(*surface, path, options, scheme);
   return *surface;

@@ -33,7 +33,7 @@ struct CommonOptions {
   bool json = false;
   std::string output;  ///< -o; empty for none
   int threads = 0;
-  std::uint64_t budget = 1'000'000;
+  std::uint64_t max_splits = 1'000'000;
   std::string weld;   ///< a length; empty: only equal vertices of STL and glTF files are
   std::string sharp;  ///< an angle or auto; empty: only what tags make sharp
   bool quiet = false;
@@ -43,7 +43,7 @@ struct CommonOptions {
 void add_common_options(OptionList& list, CommonOptions& options);
 /// Those of commands without a mesh: --json, -o, --quiet, --threads.
 void add_output_options(OptionList& list, CommonOptions& options);
-/// Those of commands that bound patches: --budget, --bounds. Returns both.
+/// Those of commands that bound patches: --max-splits, --bounds. Returns both.
 std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& options);
 /// Adds an option that names a scheme of surfaces, under the names of other programs too.
 Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
@@ -55,6 +55,10 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// Errors:    UsageError for --sharp and --boundary with a dual scheme.
 [[nodiscard]] SurfaceOptions surface_options(const CommonOptions& options, const std::string& scheme,
                                              const ControlMesh& mesh);
+
+/// How queries run: --threads, --max-splits, and a monitor that outlives them.
+[[nodiscard]] Run run_of(const CommonOptions& options, const WorkMonitor& monitor,
+                         Workspace* workspace = nullptr);
 
 /// Where notes of readers and writers go: standard error, unless quiet, each line once.
 [[nodiscard]] Notes notes_for(const CommonOptions& options);

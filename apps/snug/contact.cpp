@@ -145,14 +145,14 @@ std::string sentence(const TimeOfContact& answer, double tolerance, bool solid) 
       return fmt::format("within: no contact before time {}, and at time {} at most {:.6g} apart", lower,
                          upper, tolerance);
     case Verdict::intersecting:
-      return answer.inner
-                 ? "intersecting: proved, at time 0 " + inner_sentence(*answer.inner)
+      return answer.contained
+                 ? "intersecting: proved, at time 0 " + inner_sentence(*answer.contained)
                  : fmt::format("intersecting: proved, first contact at a time from {} to {}", lower, upper);
     case Verdict::undecided:
       break;
   }
-  if (answer.budget_ended) {
-    return fmt::format("undecided: no contact before time {}, unknown after that; give a larger --budget",
+  if (answer.outcome == Outcome::budget_spent) {
+    return fmt::format("undecided: no contact before time {}, unknown after that; give a larger --max-splits",
                        lower);
   }
   if (solid && answer.time.lower == 0) {
@@ -190,19 +190,13 @@ ExitStatus status_of(Verdict verdict) {
 }
 
 void write_answer(JsonWriter& json, const Sides& sides, const TimeOfContact& answer) {
-  json.field("verdict", name_of(answer.verdict)).field("reached", answer.reached);
+  json.field("verdict", name_of(answer.verdict)).field("outcome", name_of(answer.outcome));
   json.key("time").begin_array().value(answer.time.lower);
   answer.time.upper < INFINITY ? json.value(answer.time.upper) : json.null();
-  json.end_array().key("witness");
-  if (answer.witness) {
-    json.begin_array().value((*answer.witness)[0]).value((*answer.witness)[1]).end_array();
-    json.field("witness_error", answer.witness_error);
-  } else {
-    json.null().key("witness_error").null();
-  }
-  write_places(json, sides, answer.witness ? &answer.at : nullptr);
-  write_inner(json, answer.inner);
-  json.key("looks").value(static_cast<std::uint64_t>(answer.looks));
+  json.end_array();
+  write_witness(json, sides, answer.witness ? &*answer.witness : nullptr);
+  write_inner(json, answer.contained);
+  json.key("steps").value(static_cast<std::uint64_t>(answer.steps));
   write_stats(json, answer.stats);
 }
 
@@ -219,7 +213,6 @@ ExitStatus run(const Options& options) {
   }
   TimeOfContactOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
-  wanted.budget = options.budget;
   wanted.solid = options.solid;
   ProgressBar bar("moving", options.quiet);
   const WorkMonitor monitor = bar.monitor();
@@ -227,10 +220,10 @@ ExitStatus run(const Options& options) {
   const std::vector<Point3> end_a = deformed(deform_a, options.mesh_a, pair.a().surface().mesh(), options),
                             end_b = deformed(deform_b, options.mesh_b, pair.b().surface().mesh(), options);
   if (options.solid) pair.require_closed();
-  Report report("contact", options);
+  Report report("time-of-contact", options);
   pair.write_heads(report);
   const DeformingSurface a{pair.a().surface(), end_a, motion_a}, b{pair.b().surface(), end_b, motion_b};
-  const TimeOfContact answer = time_of_contact(a, b, wanted, monitor);
+  const TimeOfContact answer = time_of_contact(a, b, wanted, run_of(options, monitor));
   // Where the witnesses are: at contact, or at the beginning.
   const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
   const PosePair at{motion_a.at(time), motion_b.at(time)};
@@ -244,9 +237,9 @@ ExitStatus run(const Options& options) {
   }
   report.text(sentence(answer, *wanted.tolerance, options.solid));
   if (answer.witness) {
-    for (const std::string& line : witness_lines(sides, *answer.witness, answer.at)) report.text(line);
+    for (const std::string& line : witness_lines(sides, *answer.witness)) report.text(line);
   }
-  const ExitStatus status = report.finish(answer.verdict != Verdict::undecided && answer.reached);
+  const ExitStatus status = report.finish(answer.outcome == Outcome::complete);
   return options.exit_code ? status_of(answer.verdict) : status;
 }
 
@@ -255,7 +248,7 @@ ExitStatus run(const Options& options) {
 Command contact_command() {
   auto options = std::make_shared<Options>();
   options->moves = true;
-  options->budget = TimeOfContactOptions{}.budget;
+  options->max_splits = 1'000'000;
   OptionList list;
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);
@@ -267,13 +260,15 @@ Command contact_command() {
   list.add(Group::own, "--exit-code", &options->exit_code,
            "Exit with 0 if separated, 10 within, 11 intersecting, 12 undecided");
   add_pair_options(list, *options, false);
-  return {"contact",
-          Topic::two_surfaces,
-          "Bound the time when two moving limit surfaces first touch; the lower bound is never too late",
-          {"snug contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\"",
-           "snug contact ball.obj hand.obj --deform-b closed_hand.obj"},
-          std::move(list),
-          [options] { return run(*options); }};
+  return {
+      "time-of-contact",
+      Topic::two_surfaces,
+      "Bound the time when two moving limit surfaces first touch; the lower bound is never too late",
+      {"snug time-of-contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\"",
+       "snug time-of-contact ball.obj hand.obj --deform-b closed_hand.obj"},
+      std::move(list),
+      [options] { return run(*options); },
+      "contact"};
 }
 
 }  // namespace snug::command

@@ -25,9 +25,7 @@ void write_region(JsonWriter& json, const Sides& sides, const ContactRegion& reg
   json.begin_object().field("verdict", name_of(region.verdict));
   write_interval(json, "distance", region.distance);
   write_box(json, region.box);
-  json.key("witness").begin_array().value(region.witness[0]).value(region.witness[1]).end_array();
-  json.field("witness_error", region.witness_error);
-  write_places(json, sides, &region.at);
+  write_witness(json, sides, &region.witness);
   for (std::size_t s = 0; s < 2; ++s) {
     json.key(s == 0 ? "owners_a" : "owners_b").begin_array();
     for (const std::uint32_t owner : region.owners[s]) json.value(owner);
@@ -96,7 +94,7 @@ std::string curve_line(const IntersectionCurve& curve, std::size_t number) {
 }  // namespace
 
 void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found) {
-  json.field("complete", found.complete).field("reached", found.reached);
+  json.field("exhaustive", found.exhaustive);
   json.key("regions").begin_array();
   for (const ContactRegion& region : found.regions) write_region(json, sides, region);
   json.end_array().key("curves").begin_array();
@@ -120,10 +118,12 @@ std::vector<std::string> contact_lines(const Sides& sides, const Contacts& found
     lines.push_back(region_line(sides, found.regions[i], i));
   }
   for (std::size_t i = 0; i < found.curves.size(); ++i) lines.push_back(curve_line(found.curves[i], i));
-  if (!found.complete) {
-    lines.emplace_back("not complete: the budget ended; give a larger --budget or a smaller --tolerance");
-  } else if (!found.reached) {
-    lines.emplace_back("coarser than asked: the budget ended, or surfaces lie in each other");
+  if (!found.exhaustive) {
+    lines.emplace_back("not complete: the budget ended; give a larger --max-splits or a smaller --tolerance");
+  } else if (found.outcome != Outcome::complete) {
+    lines.emplace_back(found.outcome == Outcome::budget_spent
+                           ? "coarser than asked: the budget ended; give a larger --max-splits"
+                           : "coarser than asked: surfaces lie in each other");
   }
   return lines;
 }

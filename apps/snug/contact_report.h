@@ -7,7 +7,7 @@
 
 namespace snug::command {
 
-/// The fields of collide --all: complete, reached, regions, curves, open.
+/// The fields of collide --all: exhaustive, regions, curves, open.
 void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found);
 
 /// The same for people: a line for each region and each curve.

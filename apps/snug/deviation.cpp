@@ -28,7 +28,7 @@ struct Options : CommonOptions {
 /// Triangles as they are, or a control mesh with its own limit surface.
 using Candidate = std::variant<std::vector<Triangle>, Surface>;
 
-/// Answer to --tolerance: do both sets stay that near each other?
+/// Answer to --threshold: do both sets stay that near each other?
 enum class Within { yes, no, undecided };
 
 // Whatever else may be wrong with them does not matter: a set of triangles is all that is asked for.
@@ -63,7 +63,8 @@ Candidate read_candidate(const Options& options) {
     return read_surface(path, options, options.scheme_b.empty() ? options.scheme : options.scheme_b);
   }
   ProgressBar bar("reading " + path, options.quiet);
-  const ControlMesh mesh = read_mesh(path, {{}, notes_for(options), bar.monitor()});
+  const WorkMonitor monitor = bar.monitor();
+  const ControlMesh mesh = read_mesh(path, {{}, notes_for(options)}, {.monitor = &monitor});
   if (mesh.face_count() == 0) {
     throw InputError(InputProblem::refused,
                      path + ": there are no triangles to compare; give a mesh with faces");
@@ -95,17 +96,17 @@ void write_interval(JsonWriter& json, const char* key, const Interval& interval)
 
 // Null where the farthest point lies on no surface.
 void write_place_of(JsonWriter& json, const OneSidedDistance& found, const Surface* on) {
-  if (!found.at || on == nullptr) {
+  if (!found.from.at || on == nullptr) {
     json.null();
     return;
   }
   json.begin_object();
-  write_place(json, *on, *found.at);
+  write_place(json, *on, *found.from.at);
   json.end_object();
 }
 
 void write_points(JsonWriter& json, const OneSidedDistance& found) {
-  json.begin_array().value(found.from).value(found.to).end_array();
+  json.begin_array().value(found.from.point).value(found.to).end_array();
 }
 
 // Of the points of the candidate on one side of the solid; no points where there are none.
@@ -120,20 +121,20 @@ void write_side(JsonWriter& json, const std::string& side, const OneSidedDistanc
     write_points(json, found);
   }
   json.key(side + "_error");
-  none ? json.null() : json.value(found.error);
+  none ? json.null() : json.value(found.from.error);
   json.key(side + "_at");
   write_place_of(json, found, none ? nullptr : candidate);
 }
 
 void write_answer(JsonWriter& json, const Deviation& answer, const std::array<const Surface*, 2>& surfaces) {
   const std::array sides{&answer.from_surface, &answer.from_candidate};
-  json.field("reached", answer.reached);
+  json.field("outcome", snug::name_of(answer.outcome));
   write_interval(json, "from_surface", sides[0]->distance);
   write_interval(json, "from_candidate", sides[1]->distance);
   json.key("points").begin_array();
   for (const OneSidedDistance* side : sides) write_points(json, *side);
   json.end_array().key("points_error").begin_array();
-  for (const OneSidedDistance* side : sides) json.value(side->error);
+  for (const OneSidedDistance* side : sides) json.value(side->from.error);
   json.end_array().key("points_at").begin_array();
   for (std::size_t s = 0; s < 2; ++s) write_place_of(json, *sides[s], surfaces[s]);
   json.end_array();
@@ -149,13 +150,14 @@ std::string text_of(const Interval& distance) {
 
 // The farthest point, what is near it, and where it lies.
 std::string text_of(const OneSidedDistance& found, const Surface* on) {
-  std::string text = fmt::format("  ({:.8g} {:.8g} {:.8g}), and near it ({:.8g} {:.8g} {:.8g})", found.from.x,
-                                 found.from.y, found.from.z, found.to.x, found.to.y, found.to.z);
-  if (!found.at || on == nullptr) return text;
+  const Point3& from = found.from.point;
+  std::string text = fmt::format("  ({:.8g} {:.8g} {:.8g}), and near it ({:.8g} {:.8g} {:.8g})", from.x,
+                                 from.y, from.z, found.to.x, found.to.y, found.to.z);
+  if (!found.from.at || on == nullptr) return text;
+  const Place& at = *found.from.at;
   const SchemeTraits& traits = on->traits();
-  return text + fmt::format(", {} {}{} u {:.6g} v {:.6g}", traits.owner(), found.at->owner,
-                            traits.triangular ? "" : fmt::format(" corner {}", found.at->corner), found.at->u,
-                            found.at->v);
+  return text + fmt::format(", {} {}{} u {:.6g} v {:.6g}", traits.owner(), at.owner,
+                            traits.triangular ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
 }
 
 void write_text(Report& report, const Deviation& answer, const std::array<const Surface*, 2>& surfaces) {
@@ -174,7 +176,7 @@ void write_text(Report& report, const Deviation& answer, const std::array<const 
 }
 
 // The verdict as a sentence for people.
-std::string sentence(Within verdict, double tolerance, bool narrow) {
+std::string sentence(Within verdict, double tolerance, Outcome outcome) {
   switch (verdict) {
     case Within::yes:
       return fmt::format("within: proved, no point of either is farther than {:.6g} from the other",
@@ -184,29 +186,30 @@ std::string sentence(Within verdict, double tolerance, bool narrow) {
     case Within::undecided:
       break;
   }
-  return fmt::format("undecided: a distance is too close to {:.6g} to decide; give a {}", tolerance,
-                     narrow ? "smaller --precision" : "larger --budget");
+  return fmt::format("undecided: a distance is too close to {:.6g} to decide; {}", tolerance,
+                     outcome == Outcome::complete       ? "give a smaller --absolute"
+                     : outcome == Outcome::budget_spent ? "give a larger --max-splits"
+                                                        : "rounding is in the way");
 }
 
 ExitStatus run(const Options& options) {
-  const Length precision = parse_length(options.precision, "--precision");
+  const Length precision = parse_length(options.precision, "--absolute");
   std::optional<Length> tolerance;
-  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance", true);
+  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--threshold", true);
   const Surface surface = read_surface(options.mesh, options, options.scheme);
   const Candidate candidate = read_candidate(options);
   DeviationOptions wanted;
   wanted.absolute = precision.in_mesh_units(surface.size());
-  if (tolerance) wanted.tolerance = tolerance->in_mesh_units(surface.size());
+  if (tolerance) wanted.threshold = tolerance->in_mesh_units(surface.size());
   wanted.solid = options.solid;
-  wanted.budget = options.budget;
-  wanted.threads = options.threads;
   Deviation answer;
   {
     ProgressBar bar("comparing", options.quiet);
     const WorkMonitor monitor = bar.monitor();
     if (options.solid) naming(options.mesh, [&] { require_closed(surface); });
-    answer =
-        std::visit([&](const auto& other) { return deviation(surface, other, wanted, monitor); }, candidate);
+    answer = std::visit(
+        [&](const auto& other) { return deviation(surface, other, wanted, run_of(options, monitor)); },
+        candidate);
   }
   const Surface* const other = std::get_if<Surface>(&candidate);
   const std::array<const Surface*, 2> surfaces{&surface, other};
@@ -214,20 +217,23 @@ ExitStatus run(const Options& options) {
   report.heads({options.mesh, options.candidate},
                {snug::name_of(surface.scheme()), snug::name_of(other ? other->scheme() : Scheme::flat)});
   std::optional<Within> verdict;
-  if (wanted.tolerance) verdict = within(answer, *wanted.tolerance);
+  if (wanted.threshold) verdict = within(answer, *wanted.threshold);
   if (report.json()) {
-    report.write().field("precision", *wanted.absolute).key("tolerance");
-    wanted.tolerance ? report.write().value(*wanted.tolerance) : report.write().null();
+    report.write().field("absolute", *wanted.absolute).key("threshold");
+    wanted.threshold ? report.write().value(*wanted.threshold) : report.write().null();
     report.write().key("verdict");
     verdict ? report.write().value(name_of(*verdict)) : report.write().null();
     write_answer(report.write(), answer, surfaces);
   }
-  if (verdict) report.text(sentence(*verdict, *wanted.tolerance, answer.reached));
+  if (verdict) report.text(sentence(*verdict, *wanted.threshold, answer.outcome));
   write_text(report, answer, surfaces);
-  if (!verdict && !answer.reached) {
-    report.text("the precision was not reached: give a larger --budget or --precision");
+  if (!verdict && answer.outcome != Outcome::complete) {
+    report.text(answer.outcome == Outcome::budget_spent
+                    ? "the precision was not reached: give a larger --max-splits or --absolute"
+                    : "the precision was not reached: rounding is in the way; give a larger --absolute");
   }
-  const ExitStatus status = report.finish(verdict ? *verdict != Within::undecided : answer.reached);
+  const ExitStatus status =
+      report.finish(verdict ? *verdict != Within::undecided : answer.outcome == Outcome::complete);
   return options.exit_code ? status_of(*verdict) : status;
 }
 
@@ -235,24 +241,27 @@ ExitStatus run(const Options& options) {
 
 Command deviation_command() {
   auto options = std::make_shared<Options>();
-  options->budget = DeviationOptions{}.budget;
+  options->max_splits = 50'000'000;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "CANDIDATE", &options->candidate,
            "Triangles to compare with the limit surface, such as a tessellation or a scan");
-  list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Largest width of the intervals; mesh units, or percent of MESH");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Only decide whether all points are within this distance; mesh units, or percent of MESH");
+  list.add(Group::own, "--absolute LENGTH", &options->precision,
+           "Largest width of the intervals; mesh units, or percent of MESH")
+      .formerly("--precision");
+  list.add(Group::own, "--threshold LENGTH", &options->tolerance,
+           "Only decide whether all points are within this distance; mesh units, or percent of MESH")
+      .formerly("--tolerance");
   list.add(Group::own, "--exit-code", &options->exit_code, "Exit with 0 within, 13 exceeds, 12 undecided")
-      .needs("--tolerance");
+      .needs("--threshold");
   list.add(Group::own, "--surface", &options->surface,
            "CANDIDATE is a control mesh: compare the two limit surfaces");
   list.add(Group::own, "--solid", &options->solid,
            "MESH bounds a solid: also bound how far CANDIDATE lies inside and outside it");
   add_common_options(list, *options);
-  list.add(Group::effort, "--budget N", &options->budget,
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
            "Compare at most N parts in each direction, then report the bounds reached")
+      .formerly("--budget")
       .between(0, std::uint64_t{1} << 40);
   add_scheme_option(list, "--scheme-b", options->scheme_b, "Scheme of CANDIDATE; overrides --scheme")
       .needs("--surface");
@@ -260,7 +269,7 @@ Command deviation_command() {
       "deviation",
       Topic::two_surfaces,
       "How far is a mesh from the limit surface that it represents? Bounds in both directions",
-      {"snug deviation bust.obj tessellated.stl", "snug deviation bust.obj tessellated.stl --tolerance 0.1%"},
+      {"snug deviation bust.obj tessellated.stl", "snug deviation bust.obj tessellated.stl --threshold 0.1%"},
       std::move(list),
       [options] { return run(*options); }};
 }

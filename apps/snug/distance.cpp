@@ -21,48 +21,46 @@ struct Options : PairOptions {
 };
 
 void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) {
-  json.field("reached", answer.reached);
+  json.field("outcome", name_of(answer.outcome));
   json.key("distance").begin_array().value(answer.distance.lower).value(answer.distance.upper).end_array();
-  json.key("witness").begin_array().value(answer.witness[0]).value(answer.witness[1]).end_array();
-  json.field("witness_error", answer.witness_error);
-  write_places(json, sides, &answer.at);
-  write_inner(json, answer.inner);
+  write_witness(json, sides, &answer.witness);
+  write_inner(json, answer.contained);
   write_stats(json, answer.stats);
 }
 
 // Bounds of the distance and witnesses of one pose among many.
 std::string row(const Distance& answer) {
-  const auto& [a, b] = answer.witness;
+  const Point3 &a = answer.witness[0].point, &b = answer.witness[1].point;
   return fmt::format("{} {} {} {} {} {} {} {}", text_at_most(answer.distance.lower),
                      text_at_most(answer.distance.upper, true), a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
-ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions& wanted,
-                     const WorkMonitor& monitor) {
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report,
+                     const DistanceOptions& wanted, const WorkMonitor& monitor) {
+  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
   const auto ask = [&](const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace) {
-    Distance answer = distance(a, b, wanted, stop_only, workspace);
+    Distance answer = distance(a, b, wanted, run_of(options, quiet, &workspace));
     return PoseAnswer{
         .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_answer(json, sides, answer); },
         .row = row(answer),
-        .reached = answer.reached};
+        .reached = answer.outcome == Outcome::complete};
   };
   return answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
 }
 
 ExitStatus run_scene(const Options& options) {
   if (options.limit.empty()) throw UsageError("--scene needs --limit: the largest clearance to list");
-  const Length precision = parse_length(options.precision, "--precision", true);
+  const Length precision = parse_length(options.precision, "--absolute", true);
   const Length limit = parse_length(options.limit, "--limit", true);
   if (limit.percent) throw UsageError("--limit: give mesh units; parts of a scene differ in size");
   ProgressBar bar("measuring", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   SceneRun run(options, monitor);
   if (options.solid) run.require_closed();
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
   SceneQuestion question;
   question.key = fmt::format("{} {} {} {} {}", precision.number, precision.percent, options.relative,
-                             options.solid, options.budget);
+                             options.solid, options.max_splits);
   question.margin = limit.number;
   question.margins = false;
   question.header = "lower upper ax ay az bx by bz";
@@ -70,20 +68,20 @@ ExitStatus run_scene(const Options& options) {
     DistanceOptions wanted;
     wanted.absolute = precision.in_mesh_units(run.size_of(pair.parts));
     wanted.relative = options.relative;
-    wanted.budget = options.budget;
     wanted.solid = options.solid;
-    const std::optional<Distance> found = distance(run.scene(), pair, wanted, stop_only, workspace);
+    const std::optional<Distance> found =
+        distance(run.scene(), pair, wanted, run_of(options, quiet, &workspace));
     if (!found) {
       answer.verdict = Verdict::separated;
       return;
     }
     answer.verdict = found->distance.upper == 0 ? Verdict::intersecting : Verdict::within;
-    answer.reached = found->reached;
+    answer.reached = found->outcome == Outcome::complete;
     answer.row = row(*found);
     if (json) write_answer(*json, run.sides_of(pair.parts), *found);
   };
   question.head = [&](JsonWriter& json) {
-    json.field("limit", limit.number).key("precision");
+    json.field("limit", limit.number).key("absolute");
     precision.percent ? json.value(fmt::format("{}%", precision.number)) : json.value(precision.number);
     json.field("relative", options.relative);
   };
@@ -92,12 +90,11 @@ ExitStatus run_scene(const Options& options) {
 
 ExitStatus run(const Options& options) {
   if (!options.scene.empty()) return run_scene(options);
-  const Length precision = parse_length(options.precision, "--precision", true);
+  const Length precision = parse_length(options.precision, "--absolute", true);
   PairArguments pair(options);
   DistanceOptions wanted;
   wanted.absolute = precision.in_mesh_units(pair.size());
   wanted.relative = options.relative;
-  wanted.budget = options.budget;
   wanted.solid = options.solid;
   ProgressBar bar("measuring", options.quiet);
   const WorkMonitor monitor = bar.monitor();
@@ -105,30 +102,30 @@ ExitStatus run(const Options& options) {
   if (options.solid) pair.require_closed();
   Report report("distance", options);
   pair.write_heads(report);
-  if (report.json()) report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
-  if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
+  if (report.json()) report.write().field("absolute", *wanted.absolute).field("relative", *wanted.relative);
+  if (!options.poses.empty()) return run_poses(options, pair, report, wanted, monitor);
   const Sides sides{pair.a(), pair.b()};
-  const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
+  const Distance answer = distance(pair.a(), pair.b(), wanted, run_of(options, monitor));
   if (report.json()) {
     write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
     write_answer(report.write(), sides, answer);
   }
   if (answer.distance.upper == 0) {
-    report.text(answer.inner ? "proved: " + inner_sentence(*answer.inner)
-                             : "proved: the limit surfaces have a point in common");
+    report.text(answer.contained ? "proved: " + inner_sentence(*answer.contained)
+                                 : "proved: the limit surfaces have a point in common");
   } else {
     report.text(fmt::format("the limit surfaces are at least {} and at most {} apart{}",
                             text_at_most(answer.distance.lower), text_at_most(answer.distance.upper, true),
-                            answer.reached ? ""
-                            : answer.stats.splits >= options.budget
-                                ? "; the precision was not reached, give a larger --budget"
+                            answer.outcome == Outcome::complete ? ""
+                            : answer.outcome == Outcome::budget_spent
+                                ? "; the precision was not reached, give a larger --max-splits"
                                 : "; the precision was not reached because of rounding or memory"));
   }
-  for (const std::string& line : witness_lines(sides, answer.witness, answer.at)) {
+  for (const std::string& line : witness_lines(sides, answer.witness)) {
     report.text(line);
   }
   if (answer.distance.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
-  return report.finish(answer.reached);
+  return report.finish(answer.outcome == Outcome::complete);
 }
 
 }  // namespace
@@ -136,8 +133,9 @@ ExitStatus run(const Options& options) {
 Command distance_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Largest width of the interval; mesh units, or percent of the larger mesh");
+  list.add(Group::own, "--absolute LENGTH", &options->precision,
+           "Largest width of the interval; mesh units, or percent of the larger mesh")
+      .formerly("--precision");
   list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the upper bound")
       .between(0, 1);
   list.add(Group::own, "--solid", &options->solid,

@@ -1,5 +1,4 @@
 #include <fmt/core.h>
-#include <snug/closest.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/hull.h>
@@ -15,8 +14,7 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, tolerance, part;
-  std::uint64_t most = HullOptions{}.budget;
+  std::string mesh, error, part;
 };
 
 // Where a part is: its surface and the envelope are `clearance` apart; nothing where it is undecided whether
@@ -27,7 +25,7 @@ struct Fit {
 };
 
 void require_options(const Options& options) {
-  require_tolerance("envelope", options.tolerance);
+  require_error("envelope", options.error);
   if (options.output == "-") throw UsageError("envelope: standard output takes no envelope; give a file");
   if (options.output.empty() && options.part.empty()) {
     throw UsageError("envelope: give -o FILE, where the triangles go, or --part FILE, or both");
@@ -36,21 +34,20 @@ void require_options(const Options& options) {
 
 // Of surfaces that do not meet, all of a face is inside of the other one or none of it.
 Fit fit_of(const Surface& part, const Hull& envelope, const Options& options, const WorkMonitor& monitor) {
-  const Surface around(mesh_of(envelope),
-                       {.scheme = Scheme::flat, .threads = options.threads, .monitor = monitor});
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
-  const Distance found = distance(part, around, {.relative = 0.01}, stop_only);
+  const Surface around(mesh_of(envelope), {.scheme = Scheme::flat}, run_of(options, monitor));
+  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
+  const Distance found = distance(part, around, {.relative = 0.01}, {.monitor = &quiet});
   Fit fit{.inside = {}, .clearance = found.distance};
   if (found.distance.upper == 0) fit.inside = false;
   if (!(found.distance.lower > 0)) return fit;
   fit.inside = true;
   for (std::uint32_t owner = 0; owner < part.owner_count() && fit.inside == true; ++owner) {
-    const SurfaceParameter middle{owner, 0, 1.0 / 3, 1.0 / 3};
+    const Place middle{owner, 0, 1.0 / 3, 1.0 / 3};
     if (!part.has(middle)) continue;
     const SurfacePoint at = evaluate(part, middle);
     // The limit point that it stands for is on the same side.
     if (2 * at.error > found.distance.lower) return {.inside = {}, .clearance = found.distance};
-    fit.inside = contains(around, at.position, stop_only);
+    fit.inside = contains(around, at.point, {.monitor = &quiet});
   }
   return fit;
 }
@@ -79,13 +76,13 @@ void write_fit(Report& report, const Options& options, const Fit& fit) {
   }
 }
 
-void write_summary(Report& report, const Options& options, const Surface& surface, double tolerance,
+void write_summary(Report& report, const Options& options, const Surface& surface, double error,
                    const Hulls& found) {
   if (report.json()) {
-    report.write().field("tolerance", tolerance).key("envelope");
-    write_hull(report.write(), found.outer, found.verified);
+    report.write().field("error", error).key("envelope");
+    write_hull(report.write(), found.outer);
   }
-  if (found.verified) {
+  if (found.outcome == Outcome::complete) {
     report.text(
         fmt::format("{}: {} triangles around the solid, proved closed and not to touch its limit surface, at "
                     "most {} from it",
@@ -104,27 +101,27 @@ ExitStatus run(const Options& options) {
   to_standard_output.output.clear();
   Report report("envelope", to_standard_output);
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  HullOptions how{.inner = false, .budget = options.most, .threads = options.threads};
+  HullOptions how{.inner = false};
   how.single_precision = !options.output.empty() && format_of(options.output).floats;
   Hulls found;
   ProgressBar bar("making an envelope of " + options.mesh, options.quiet);
   const WorkMonitor monitor = bar.monitor();
   naming(options.mesh, [&] {
-    how.tolerance = parse_length(options.tolerance, "--tolerance").in_mesh_units(surface.size());
+    how.error = parse_length(options.error, "--error").in_mesh_units(surface.size());
     require_closed(surface);
     if (has_edges_of_many_faces(surface.mesh())) {
       throw InputError(InputProblem::refused,
                        "envelope: edges of more than two faces have no envelope; 'snug info' lists them");
     }
-    found = hulls(surface, how, monitor);
+    found = hull(surface, how, run_of(options, monitor));
   });
   std::optional<Fit> fit;
-  if (part && found.verified)
+  if (part && found.outcome == Outcome::complete)
     naming(options.part, [&] { fit = fit_of(*part, *found.outer, options, monitor); });
-  write_summary(report, options, surface, how.tolerance, found);
+  write_summary(report, options, surface, *how.error, found);
   if (fit) write_fit(report, options, *fit);
-  const bool reached = found.verified && (!fit || fit->inside);
-  if (options.output.empty() || !found.verified) return report.finish(reached);
+  const bool reached = found.outcome == Outcome::complete && (!fit || fit->inside);
+  if (options.output.empty() || found.outcome != Outcome::complete) return report.finish(reached);
   AtomicFile file(options.output);
   write_facets(mesh_of(*found.outer), file, options.output, options);
   return report.finish(reached, {&file});
@@ -137,20 +134,23 @@ Command envelope_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh of a solid (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
+  list.add(Group::own, "--error LENGTH", &options->error,
+           "Largest distance between limit surface and envelope, either way; mesh units or percent, such as "
+           "1%")
+      .formerly("--tolerance");
   list.add(
       Group::own, "--part FILE", &options->part,
       "Report whether the limit surface of this control mesh lies inside the envelope, and how far from it");
   add_common_options(list, *options);
-  list.add(Group::effort, "--budget N", &options->most, "At most N triangles in the envelope");
-  return {"envelope",
-          Topic::files,
-          "Write a closed mesh around the solid bounded by a limit surface, proved not to touch it",
-          {"snug envelope pawn.obj --tolerance 1% -o around.stl",
-           "snug envelope pawn.obj --tolerance 2% --part pin.obj"},
-          std::move(list),
-          [options] { return run(*options); }};
+  list.add(Group::effort, "--max-splits N", &options->max_splits, "At most N triangles in the envelope")
+      .formerly("--budget");
+  return {
+      "envelope",
+      Topic::files,
+      "Write a closed mesh around the solid bounded by a limit surface, proved not to touch it",
+      {"snug envelope pawn.obj --error 1% -o around.stl", "snug envelope pawn.obj --error 2% --part pin.obj"},
+      std::move(list),
+      [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

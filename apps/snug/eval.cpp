@@ -38,12 +38,10 @@ Columns columns_of(const Surface& surface) {
   return columns;
 }
 
-void add_row(ColumnTable& table, const Surface& surface, const SurfaceParameter& at,
-             const SurfacePoint& point) {
+void add_row(ColumnTable& table, const Surface& surface, const Place& at, const SurfacePoint& point) {
   table.add(at.owner);
   if (!surface.traits().triangular) table.add(at.corner);
-  for (const double x : {at.u, at.v, point.position.x, point.position.y, point.position.z, point.error})
-    table.add(x);
+  for (const double x : {at.u, at.v, point.point.x, point.point.y, point.point.z, point.error}) table.add(x);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const Vector3& vector :
        {point.normal.value_or(Vector3{none, none, none}), point.tangents[0], point.tangents[1]}) {
@@ -58,15 +56,14 @@ struct Output {
   ColumnTable* table;
 };
 
-void write_point(const Output& output, const Surface& surface, const SurfaceParameter& at,
-                 const SurfacePoint& point) {
+void write_point(const Output& output, const Surface& surface, const Place& at, const SurfacePoint& point) {
   if (output.table) return add_row(*output.table, surface, at, point);
   Report& report = output.report;
   const SchemeTraits& traits = surface.traits();
   if (!report.json()) {
     report.text(fmt::format("{} {} {}{}  {} {} {}", at.owner, at.u, at.v,
-                            traits.triangular ? "" : fmt::format(" {}", at.corner), point.position.x,
-                            point.position.y, point.position.z));
+                            traits.triangular ? "" : fmt::format(" {}", at.corner), point.point.x,
+                            point.point.y, point.point.z));
     return;
   }
   JsonWriter& json = report.write();
@@ -78,9 +75,9 @@ void write_point(const Output& output, const Surface& surface, const SurfacePara
 // Writes the points of a lattice on an owner; returns how many.
 std::size_t write_lattice(const Output& output, const Options& options, const Surface& surface,
                           std::uint32_t owner) {
-  std::vector<SurfaceParameter> places;
-  for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) { places.push_back(at); });
-  const std::vector<SurfacePoint> points = evaluate(surface, places, 1);
+  std::vector<Place> places;
+  for_each_place(surface, owner, options.samples, [&](const Place& at) { places.push_back(at); });
+  const std::vector<SurfacePoint> points = evaluate(surface, places, {.threads = 1});
   for (std::size_t i = 0; i < places.size(); ++i) write_point(output, surface, places[i], points[i]);
   return places.size();
 }
@@ -142,7 +139,7 @@ void write_point(const Output& output, const CurveSet&, const CurveParameter& at
   Report& report = output.report;
   if (!report.json()) return report.text(fmt::format("{} {}  {} {} {}", at.edge, at.t, x, y, z));
   JsonWriter& json = report.write();
-  json.begin_object().field("edge", at.edge).field("t", at.t).field("position", point.position);
+  json.begin_object().field("edge", at.edge).field("t", at.t).field("point", point.position);
   json.field("error", point.error).field("tangent", point.tangent).end_object();
 }
 

@@ -113,7 +113,7 @@ double mean_curvature(const PatchEvaluator& evaluate_at, TriangleParameter at) {
   const SurfacePoint here = evaluate_at(first), along_u = evaluate_at({first.u + inwards_u, first.v}),
                      along_v = evaluate_at({first.u, first.v + inwards_v});
   if (!here.normal || !along_u.normal || !along_v.normal) return 0;
-  const Vector3 xu = along_u.position - here.position, xv = along_v.position - here.position,
+  const Vector3 xu = along_u.point - here.point, xv = along_v.point - here.point,
                 nu = *along_u.normal - *here.normal, nv = *along_v.normal - *here.normal;
   const double e = dot(xu, xu), f = dot(xu, xv), g = dot(xv, xv), area = e * g - f * f;
   const double change = dot(nu, xu) * g - (dot(nu, xv) + dot(nv, xu)) * f + dot(nv, xv) * e;
@@ -128,13 +128,14 @@ std::shared_ptr<Field> distances(const PlacedSurface& surface, const PlacedSurfa
   // All points first, so that they are asked for together.
   std::vector<Point3> points;
   const auto collect = [&](PatchId, const PatchEvaluator& evaluate_at, TriangleParameter at) {
-    points.push_back(to_other.apply(evaluate_at(at).position));
+    points.push_back(to_other.apply(evaluate_at(at).point));
     return 0.0;
   };
   static_cast<void>(Field(limit_of(surface.surface()), steps, 1, monitor, collect));
-  ClosestOptions how;
+  Precision how;
   how.absolute = 1e-3 * other.surface().size();
-  const std::vector<ClosestPoint> found = closest_points(model, points, how, threads, monitor);
+  const std::vector<ClosestPoint> found =
+      closest_point(model, points, how, {.threads = threads, .monitor = &monitor});
   std::size_t next = 0;
   return std::make_shared<Field>(
       limit_of(surface.surface()), steps, 1, monitor,

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include <picture/scene.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 #include "scene_builder.h"
 

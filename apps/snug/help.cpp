@@ -69,7 +69,7 @@ constexpr std::array groups{
 };
 
 constexpr const char* statuses =
-    "0 answered, 2 usage, 3 unreadable file, 4 refused mesh, 5 tolerance or budget not reached, "
+    "0 answered, 2 usage, 3 unreadable file, 4 refused mesh, 5 not as narrow or as fine as requested, "
     "130 interrupted.";
 
 }  // namespace

@@ -13,12 +13,11 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, tolerance, inner, outer;
-  std::uint64_t most = HullOptions{}.budget;
+  std::string mesh, error, inner, outer;
 };
 
 void require_options(const Options& options) {
-  require_tolerance("hull", options.tolerance);
+  require_error("hull", options.error);
   if (options.inner.empty() && options.outer.empty()) {
     throw UsageError("hull: give --inner FILE, --outer FILE, or both: where the triangles go");
   }
@@ -33,34 +32,32 @@ void require_options(const Options& options) {
 
 HullOptions how_to(const Options& options, const Surface& surface) {
   HullOptions how;
-  how.tolerance = parse_length(options.tolerance, "--tolerance").in_mesh_units(surface.size());
+  how.error = parse_length(options.error, "--error").in_mesh_units(surface.size());
   how.inner = !options.inner.empty();
   how.outer = !options.outer.empty();
-  how.budget = options.most;
-  how.threads = options.threads;
   how.single_precision =
       (how.inner && format_of(options.inner).floats) || (how.outer && format_of(options.outer).floats);
   return how;
 }
 
-void write_summary(Report& report, const Options& options, const Surface& surface, double tolerance,
+void write_summary(Report& report, const Options& options, const Surface& surface, double error,
                    const Hulls& found) {
   if (report.json()) {
     JsonWriter& json = report.write();
-    json.field("tolerance", tolerance).field("closed", found.closed);
+    json.field("error", error).field("closed", found.closed);
     json.key("inner");
-    write_hull(json, found.inner, found.verified);
+    write_hull(json, found.inner);
     json.key("outer");
-    write_hull(json, found.outer, found.verified);
+    write_hull(json, found.outer);
   }
   for (const auto& [hull, file, name] :
        {std::tuple{&found.inner, &options.inner, "inner"}, {&found.outer, &options.outer, "outer"}}) {
-    if (!*hull || !found.verified) continue;
+    if (!*hull || found.outcome != Outcome::complete) continue;
     report.text(
         fmt::format("{}: {} hull of {} triangles, proved not to meet the limit surface, at most {} from it",
                     *file, name, (*hull)->triangles.size(), text_at_most((*hull)->gap, true)));
   }
-  if (found.verified && !found.closed) {
+  if (found.outcome == Outcome::complete && !found.closed) {
     report.text("the surface is open: the hulls are sheets behind and in front of it, not solids");
   }
   write_verdict(report, found, surface.traits().owner());
@@ -77,17 +74,17 @@ ExitStatus run(const Options& options) {
     how = how_to(options, surface);
     ProgressBar bar("making hulls of " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    found = hulls(surface, how, monitor);
+    found = hull(surface, how, run_of(options, monitor));
   });
   std::deque<AtomicFile> files;
   for (const auto& [hull, path] : {std::pair{&found.inner, &options.inner}, {&found.outer, &options.outer}}) {
-    if (!*hull || !found.verified) continue;
+    if (!*hull || found.outcome != Outcome::complete) continue;
     write_facets(mesh_of(**hull), files.emplace_back(*path), *path, options);
   }
-  write_summary(report, options, surface, how.tolerance, found);
+  write_summary(report, options, surface, *how.error, found);
   std::vector<AtomicFile*> written;
   for (AtomicFile& file : files) written.push_back(&file);
-  return report.finish(found.verified, written);
+  return report.finish(found.outcome == Outcome::complete, written);
 }
 
 }  // namespace
@@ -97,18 +94,20 @@ Command hull_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Largest distance between limit surface and hulls, either way; mesh units or percent (1%)");
+  list.add(Group::own, "--error LENGTH", &options->error,
+           "Largest distance between limit surface and hulls, either way; mesh units or percent, such as 1%")
+      .formerly("--tolerance");
   list.add(Group::own, "--inner FILE", &options->inner,
            "Write the hull behind the surface, inside the solid (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--outer FILE", &options->outer,
            "Write the hull in front of the surface, around the solid");
   add_common_options(list, *options);
-  list.add(Group::effort, "--budget N", &options->most, "At most N triangles in a hull");
+  list.add(Group::effort, "--max-splits N", &options->max_splits, "At most N triangles in a hull")
+      .formerly("--budget");
   return {"hull",
           Topic::files,
           "Write triangles inside and outside a limit surface, proved not to touch it",
-          {"snug hull pawn.obj --tolerance 1% --inner inner.ply --outer outer.ply"},
+          {"snug hull pawn.obj --error 1% --inner inner.ply --outer outer.ply"},
           std::move(list),
           [options] { return run(*options); }};
 }

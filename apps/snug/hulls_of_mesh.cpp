@@ -17,19 +17,19 @@ constexpr std::size_t max_printed = 10;
 const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
-      return "no position near enough is in front of all faces around: a larger --tolerance helps at tight "
+      return "no position near enough is in front of all faces around: a larger --error helps at tight "
              "curves, and not at a spike, a fold or a saddle-shaped corner";
     case HullFault::meets_surface:
       return "the hull could not be kept off the surface: sheets are too near to each other, or touch; try a "
-             "smaller --tolerance";
+             "smaller --error";
     case HullFault::meets_itself:
       return "the hull could not be kept off itself: sheets are too near to each other, or touch; try a "
              "smaller "
-             "--tolerance";
+             "--error";
     case HullFault::meets_other:
-      return "the hulls could not be kept off each other; try a smaller --tolerance";
+      return "the hulls could not be kept off each other; try a smaller --error";
     case HullFault::too_few_triangles:
-      return "the budget allows too few triangles; give a larger --budget or --tolerance";
+      return "the budget allows too few triangles; give a larger --max-splits or --error";
     case HullFault::not_around:
       break;
   }
@@ -64,12 +64,12 @@ ControlMesh mesh_of(const Hull& hull) {
   return mesh;
 }
 
-void require_tolerance(const std::string& command, const std::string& tolerance) {
-  if (tolerance.empty()) throw UsageError(command + ": give --tolerance LENGTH, such as 1%");
-  static_cast<void>(parse_length(tolerance, "--tolerance"));
+void require_error(const std::string& command, const std::string& tolerance) {
+  if (tolerance.empty()) throw UsageError(command + ": give --error LENGTH, such as 1%");
+  static_cast<void>(parse_length(tolerance, "--error"));
 }
 
-void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified) {
+void write_hull(JsonWriter& json, const std::optional<Hull>& hull) {
   if (!hull) {
     json.null();
     return;
@@ -77,19 +77,19 @@ void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified
   json.begin_object().field("vertices", hull->positions.size()).field("triangles", hull->triangles.size());
   json.key("gap");
   std::isfinite(hull->gap) ? json.value(hull->gap) : json.null();
-  json.field("verified", verified).end_object();
+  json.end_object();
 }
 
 void write_verdict(Report& report, const Hulls& hulls, const char* owner) {
   const std::size_t printed = std::min(hulls.problems.size(), max_printed);
   if (report.json()) {
     JsonWriter& json = report.write();
-    json.field("verified", hulls.verified).key("problems").begin_array();
+    json.field("outcome", name_of(hulls.outcome)).key("problems").begin_array();
     for (std::size_t i = 0; i < printed; ++i) write_problem(json, hulls.problems[i], owner);
     json.end_array();
   }
-  if (hulls.verified) return;
-  report.text("not verified, so nothing was written:");
+  if (hulls.outcome == Outcome::complete) return;
+  report.text("not proved, so nothing was written:");
   for (std::size_t i = 0; i < printed; ++i) report.text("  " + sentence(hulls.problems[i], owner));
   if (printed < hulls.problems.size()) report.text("  and at more places");
 }

@@ -13,14 +13,14 @@ namespace snug::command {
 /// A hull as a mesh to write or to ask.
 [[nodiscard]] ControlMesh mesh_of(const Hull& hull);
 
-/// "tolerance" of --tolerance.
+/// A length for --error.
 /// Errors:    UsageError if it is missing or no length, naming the command.
-void require_tolerance(const std::string& command, const std::string& tolerance);
+void require_error(const std::string& command, const std::string& tolerance);
 
-/// {vertices, triangles, gap, verified}, or null.
-void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified);
+/// {vertices, triangles, gap}, or null.
+void write_hull(JsonWriter& json, const std::optional<Hull>& hull);
 
-/// Whether all is proved, and where not, in words and as "verified", "problems". `owner`: what the
+/// Whether all is proved, and where not, in words and as "outcome", "problems". `owner`: what the
 /// surface's patches belong to, in a word.
 void write_verdict(Report& report, const Hulls& hulls, const char* owner);
 

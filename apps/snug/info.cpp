@@ -81,8 +81,8 @@ ExitStatus run(const Options& options) {
   double size = 0;
   std::string refusal;
   try {
-    const Surface surface(mesh, how);
-    apart = limit_to_faces(surface, options.threads);
+    const Surface surface(mesh, how, {.threads = options.threads});
+    apart = limit_to_faces(surface, {.threads = options.threads});
     size = surface.size();
     kinds = surface.kind_count();
     if (counts.closed && counts.boxes_meet) twice = owner_wound_twice(surface);

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include <fmt/core.h>
-#include <snug/error.h>
+#include <snug/run.h>
 
 namespace snug::command {
 namespace {

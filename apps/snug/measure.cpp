@@ -16,7 +16,7 @@ struct Options : CommonOptions {
 
 // A share of what is measured: 0.0001 or 0.01%.
 double relative_precision(const std::string& text) {
-  const Length share = parse_length(text, "--precision", true);
+  const Length share = parse_length(text, "--relative", true);
   return share.percent ? share.number / 100 : share.number;
 }
 
@@ -37,7 +37,7 @@ void write_intervals(JsonWriter& json, const char* name, const std::optional<std
 }
 
 void write_json(JsonWriter& json, const Measures& found, double relative) {
-  json.field("precision", relative).field("reached", found.reached);
+  json.field("relative", relative).field("outcome", name_of(found.outcome));
   json.key("area") << found.area;
   json.field("closed", found.volume.has_value());
   json.key("volume");
@@ -77,42 +77,44 @@ void write_text(Report& report, const Measures& found, const std::optional<std::
 ExitStatus run(const Options& options) {
   MeasureOptions wanted;
   wanted.relative = relative_precision(options.precision);
-  wanted.budget = options.budget;
-  wanted.threads = options.threads;
   const Surface surface = read_surface(options.mesh, options, options.scheme);
   Report report("measure", options);
   Measures found;
   {
     ProgressBar bar("measuring", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] { found = measure(surface, wanted, monitor); });
+    naming(options.mesh, [&] { found = measure(surface, wanted, run_of(options, monitor)); });
   }
   report.heads({options.mesh}, {name_of(surface.scheme())});
   if (report.json()) write_json(report.write(), found, *wanted.relative);
   write_text(report, found, surface.open_reason());
-  if (!found.reached) {
-    report.text("the precision was not reached; give a larger --budget or --precision");
+  if (found.outcome != Outcome::complete) {
+    report.text(found.outcome == Outcome::budget_spent
+                    ? "the precision was not reached; give a larger --max-splits or --relative"
+                    : "the precision was not reached: rounding is in the way; give a larger --relative");
   }
-  return report.finish(found.reached);
+  return report.finish(found.outcome == Outcome::complete);
 }
 
 }  // namespace
 
 Command measure_command() {
   auto options = std::make_shared<Options>();
-  options->budget = MeasureOptions{}.budget;
+  options->max_splits = 10'000'000;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
-  list.add(Group::own, "--precision SHARE", &options->precision,
-           "Largest relative width of an interval: 0.0001 or 0.01%");
-  list.add(Group::effort, "--budget N", &options->budget,
+  list.add(Group::own, "--relative SHARE", &options->precision,
+           "Largest relative width of an interval: 0.0001 or 0.01%")
+      .formerly("--precision");
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
            "Split at most N pieces, divided evenly among patches")
+      .formerly("--budget")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"measure",
           Topic::one_surface,
           "Bound the area, volume, centroid and inertia of a limit surface",
-          {"snug measure pawn.obj", "snug measure part.stl --sharp auto --precision 1e-6 --json"},
+          {"snug measure pawn.obj", "snug measure part.stl --sharp auto --relative 1e-6 --json"},
           std::move(list),
           [options] { return run(*options); }};
 }

@@ -89,7 +89,7 @@ void note_smoothing(const Surface& surface, const std::string& path, const Commo
     return;
   }
   if (!apart && surface.mesh().face_count() > max_measured_faces) return;
-  if (!apart) apart = limit_to_faces(surface, options.threads);
+  if (!apart) apart = limit_to_faces(surface, {.threads = options.threads});
   if (apart && *apart > 0) {
     note(path + ": where it is smooth the limit surface differs from the faces: at most " +
          text_of_length(*apart, surface.size()));

@@ -125,6 +125,11 @@ Option& Option::required() {
   return *this;
 }
 
+Option& Option::formerly(const std::string& old_name) {
+  former = old_name;
+  return *this;
+}
+
 Option& Option::unless(const std::string& other) {
   replacement = other;
   return excludes(other);

@@ -11,7 +11,7 @@
 
 /// Options as commands declare them: where --help lists them, and what values they take.
 ///
-///     options.add(Group::own, "--level N", level, "Steps of subdivision").between(0, 12).excludes("--tolerance");
+///     options.add(Group::own, "--level N", level, "Steps of subdivision").between(0, 12).excludes("--error");
 ///
 /// A bool is a flag, a vector an option that may be given several times; a name without dashes is an argument
 /// such as MESH, and must be given.
@@ -37,6 +37,7 @@ struct Option {
   std::vector<std::string> excluded{}, needed{};
   bool must{};                ///< without it the command cannot run
   std::string replacement{};  ///< or without this other one
+  std::string former{};       ///< the name that it had in the version before
 
   /// The value is one of these words. Neither case nor '-' or '_' inside a word matters: edgeOnly is
   /// edge-only.
@@ -50,6 +51,8 @@ struct Option {
   /// Only together with that one.
   Option& needs(const std::string& other);
   Option& required();
+  /// Taken under its old name too, with a note.
+  Option& formerly(const std::string& old_name);
   /// An argument that must be given unless that option is, and not together with it.
   Option& unless(const std::string& other);
 

@@ -74,8 +74,8 @@ PairArguments::PairArguments(const PairOptions& options) : options_(options) {
 }
 
 void PairArguments::prepare(const WorkMonitor& monitor) const {
-  naming(options_.mesh_a, [&] { a().surface().prepare(monitor); });
-  naming(options_.mesh_b, [&] { b().surface().prepare(monitor); });
+  naming(options_.mesh_a, [&] { a().surface().prepare({.monitor = &monitor}); });
+  naming(options_.mesh_b, [&] { b().surface().prepare({.monitor = &monitor}); });
 }
 
 void PairArguments::require_closed() const {

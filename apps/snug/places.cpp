@@ -13,14 +13,14 @@ std::string place_words(const SchemeTraits& traits) {
   return std::string(traits.owner()) + (traits.triangular ? " u v" : " u v [corner]");
 }
 
-SurfaceParameter read_place(std::string_view line, const Surface& surface, const std::string& where,
-                            const std::string& expected) {
+Place read_place(std::string_view line, const Surface& surface, const std::string& where,
+                 const std::string& expected) {
   const SchemeTraits& traits = surface.traits();
   const std::string owner = traits.owner();
   const auto unreadable = [&](const std::string& why) {
     return InputError(InputProblem::unreadable, where + why);
   };
-  SurfaceParameter at{};
+  Place at{};
   bool good =
       parse(next_word(line), at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
   if (const std::string_view corner = next_word(line); good && !corner.empty()) {
@@ -49,22 +49,21 @@ SurfaceParameter read_place(std::string_view line, const Surface& surface, const
   return at;
 }
 
-std::vector<SurfaceParameter> read_places(const std::string& path, const Surface& surface) {
+std::vector<Place> read_places(const std::string& path, const Surface& surface) {
   const std::string text = read_file(path, stopped_by_interrupts());
   const std::string expected = place_words(surface.traits());
-  std::vector<SurfaceParameter> places;
+  std::vector<Place> places;
   for_each_line(text, [&](std::string_view line, std::size_t number) {
     places.push_back(read_place(line, surface, path + ":" + std::to_string(number) + ": ", expected));
   });
   return places;
 }
 
-void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at,
-                 const SurfacePoint& point) {
+void write_place(JsonWriter& json, const Surface& surface, const Place& at, const SurfacePoint& point) {
   const SchemeTraits& traits = surface.traits();
   json.field(traits.owner(), at.owner).field("u", at.u).field("v", at.v);
   if (!traits.triangular) json.field("corner", at.corner);
-  json.field("position", point.position).field("error", point.error).key("normal");
+  json.field("point", point.point).field("error", point.error).key("normal");
   point.normal ? json.value(*point.normal) : json.null();
   json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
   json.field("differentiable", point.differentiable);

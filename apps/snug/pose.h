@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
+#include <snug/geometry.h>
 #include <snug/mesh.h>
-#include <snug/motion.h>
 
 #include "options.h"
 

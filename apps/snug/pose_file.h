@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/monitor.h>
-#include <snug/motion.h>
+#include <snug/geometry.h>
+#include <snug/run.h>
 
 namespace snug::command {
 

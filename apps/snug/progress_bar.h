@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 namespace snug::command {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include <fmt/core.h>
-#include <snug/error.h>
+#include <snug/run.h>
 
 namespace snug::command {
 namespace {

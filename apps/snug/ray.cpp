@@ -54,51 +54,42 @@ void write_hit(JsonWriter& json, const Surface& surface, const RayHit& hit) {
       .value(hit.t.lower)
       .value(hit.t.upper)
       .end_array()
-      .field("certified", hit.certified)
-      .field("reached", hit.reached);
+      .field("certified", hit.certified);
   json.key("side");
   hit.side == 0 ? json.null() : json.value(hit.side);
-  json.field("position", hit.point).field("error", hit.point_error);
-  write_place(json, surface, hit.at);
+  json.field("point", hit.point).field("error", hit.error);
+  write_place(json, surface, *hit.at);
   json.end_object();
 }
 
 std::string line_of(std::size_t ray, const Surface& surface, const RayHit& hit) {
-  const std::string corner = surface.traits().triangular ? "" : fmt::format(" {}", hit.at.corner);
+  const std::string corner = surface.traits().triangular ? "" : fmt::format(" {}", hit.at->corner);
   return fmt::format("{}  {} {}  {}  {} {} {}  {} {} {}{}", ray, hit.t.lower, hit.t.upper,
                      hit.certified ? "certified" : "uncertified", hit.point.x, hit.point.y, hit.point.z,
-                     hit.at.owner, hit.at.u, hit.at.v, corner);
+                     hit.at->owner, hit.at->u, hit.at->v, corner);
 }
 
-// Does each hit that is proved reach the precision? Whether a ray is blocked needs none.
-bool reached(const RayHits& answer, RayQuery query) {
-  return query == RayQuery::any || std::all_of(answer.hits.begin(), answer.hits.end(), [](const RayHit& hit) {
-           return hit.reached || !hit.certified;
-         });
-}
-
-void write_answer(Report& report, const Surface& surface, std::size_t ray, const RayHits& answer,
-                  bool narrow_enough) {
+void write_answer(Report& report, const Surface& surface, std::size_t ray, const RayHits& answer) {
   if (report.json()) {
     JsonWriter& json = report.write();
-    json.begin_object().field("complete", answer.complete).key("hits").begin_array();
+    json.begin_object().field("outcome", name_of(answer.outcome)).key("hits").begin_array();
     for (const RayHit& hit : answer.hits) write_hit(json, surface, hit);
     json.end_array().end_object();
     return;
   }
   for (const RayHit& hit : answer.hits) report.text(line_of(ray, surface, hit));
   if (answer.certain_miss()) report.text(fmt::format("{}  no hit", ray));
-  if (!narrow_enough) {
-    report.text(fmt::format("{}  not within --precision: rounding or a glancing ray leaves more", ray));
+  if (answer.outcome == Outcome::at_rounding) {
+    report.text(fmt::format("{}  not within --absolute: rounding or a glancing ray leaves more", ray));
   }
-  if (!answer.complete) {
-    report.text(fmt::format("{}  the budget ended: there may be more; give a larger --budget", ray));
+  if (answer.outcome == Outcome::budget_spent) {
+    report.text(fmt::format("{}  the budget ended: there may be more; give a larger --max-splits", ray));
   }
 }
 
 // Nothing about the ray is left open.
 bool decided(const RayHits& answer) {
-  if (!answer.complete) return false;
+  if (answer.outcome != Outcome::complete) return false;
   for (const RayHit& hit : answer.hits) {
     if (!hit.certified) return false;
   }
@@ -106,29 +97,27 @@ bool decided(const RayHits& answer) {
 }
 
 ExitStatus run(const Options& options) {
-  const Length precision = parse_length(options.precision, "--precision", true);
+  const Length precision = parse_length(options.precision, "--absolute", true);
   const std::vector<Ray> rays = read_rays(options.rays);
   const Surface surface = read_surface(options.mesh, options, options.scheme);
   RayOptions wanted;
   wanted.query = options.all ? RayQuery::all : options.any ? RayQuery::any : RayQuery::nearest;
-  wanted.precision = precision.in_mesh_units(surface.size());
-  wanted.budget = options.budget;
+  wanted.absolute = precision.in_mesh_units(surface.size());
   std::vector<RayHits> answers;
   {
     ProgressBar bar("rays", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] { answers = trace(surface, rays, wanted, options.threads, monitor); });
+    naming(options.mesh, [&] { answers = ray(surface, rays, wanted, run_of(options, monitor)); });
   }
   Report report("ray", options);
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  if (report.json()) report.write().field("precision", *wanted.precision).key("results").begin_array();
+  if (report.json()) report.write().field("absolute", *wanted.absolute).key("results").begin_array();
   report.text(fmt::format("# ray  t: lower upper  proof  x y z  {} u v{}", surface.traits().owner(),
                           surface.traits().triangular ? "" : " corner"));
   bool all_decided = true;
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const bool narrow_enough = reached(answers[i], wanted.query);
-    write_answer(report, surface, i, answers[i], narrow_enough);
-    all_decided = all_decided && narrow_enough && decided(answers[i]);
+    write_answer(report, surface, i, answers[i]);
+    all_decided = all_decided && decided(answers[i]);
   }
   if (report.json()) report.write().end_array();
   return report.finish(all_decided);
@@ -138,7 +127,7 @@ ExitStatus run(const Options& options) {
 
 Command ray_command() {
   auto options = std::make_shared<Options>();
-  options->budget = RayOptions().budget;
+  options->max_splits = 20'000;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--rays FILE", &options->rays,
@@ -149,8 +138,9 @@ Command ray_command() {
   list.add(Group::own, "--any", &options->any,
            "Any hit, not necessarily the nearest, to test whether the ray is blocked")
       .excludes("--all");
-  list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Target width of the interval of a hit; mesh units, or percent of the mesh");
+  list.add(Group::own, "--absolute LENGTH", &options->precision,
+           "Target width of the interval of a hit; mesh units, or percent of the mesh")
+      .formerly("--precision");
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"ray",

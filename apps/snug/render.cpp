@@ -16,6 +16,7 @@
 #include <support/direction.h>
 #include <support/number.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 #include "common.h"
 #include "curve.h"
@@ -58,7 +59,7 @@ struct Options : CommonOptions {
   std::string size = "1000x1000", view, up;
   int samples = 3;
   bool cage = false, enclosures = false, no_shadows = false;
-  std::string tolerance, cut;
+  std::string error, cut;
   std::string colour = "plain";
   double zoom = 1;
   std::vector<std::string> opacities;
@@ -193,7 +194,7 @@ void require_of_use(const Options& options, const std::vector<Part>& parts) {
 struct Enclosures {
   std::vector<std::vector<IntervalTriangle>> of_part;
   std::size_t count = 0;
-  bool reached = true;
+  Outcome outcome = Outcome::complete;
 };
 
 // The patches or edges of a part, which are split into how many pieces?
@@ -232,8 +233,7 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   if (!options.enclosures) return result;
   BoundOptions how;
   how.level = options.level;
-  how.threads = options.threads;
-  std::uint64_t room = room_for_splits(options, parts), budget = options.budget;
+  std::uint64_t room = room_for_splits(options, parts), budget = options.max_splits;
   for (const Part& part : parts) {
     std::vector<IntervalTriangle>& pieces = result.of_part.emplace_back();
     const auto keep = [&](const PatchEnclosure& piece) { pieces.push_back(piece.interval); };
@@ -245,15 +245,17 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
       const Surface* surface = part.surface();
       const CurveSet* curves = part.curves();
       const std::uint64_t more_a_split = pieces_of(part).children - 1;
-      if (tolerance) how.tolerance = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
-      how.budget = std::min(budget, room / more_a_split);
+      if (tolerance) how.error = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
       ProgressBar bar("bounding " + part.path, options.quiet);
+      const WorkMonitor monitor = bar.monitor();
+      Run run = run_of(options, monitor);
+      run.max_splits = std::min(budget, room / more_a_split);
       const BoundSummary summary =
-          curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
+          curves ? bound(*curves, how, keep_curve, run) : bound(*surface, how, keep, run);
       budget -= summary.splits;
       room -= summary.splits * more_a_split;
       result.count += pieces.size();
-      result.reached = result.reached && summary.reached;
+      result.outcome = worse(result.outcome, summary.outcome);
     });
   }
   return result;
@@ -285,7 +287,7 @@ std::vector<std::unique_ptr<RayCaster>> make_casters(const Options& options, std
     std::unique_ptr<RayCaster>& caster = casters.emplace_back();
     if (!part.surface()) continue;
     naming(part.path, [&] {
-      caster = std::make_unique<RayCaster>(*part.surface(), tolerance, options.threads, monitor);
+      caster = std::make_unique<RayCaster>(*part.surface(), tolerance, run_of(options, monitor));
     });
   }
   return casters;
@@ -499,7 +501,7 @@ ExitStatus run(const Options& options) {
   const Size size = parse_size(options.size);
   const View view = choose_view(options);
   std::optional<Length> tolerance;
-  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
+  if (!options.error.empty()) tolerance = parse_length(options.error, "--error");
   const Mending mending{options.nearest_rigid, notes_for(options)};
   std::vector<Motion> poses;
   for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--place", mending));
@@ -547,20 +549,20 @@ ExitStatus run(const Options& options) {
         .field("height", size.height);
     json.field("triangles", triangles)
         .field("enclosures", enclosures.count)
-        .field("reached", enclosures.reached);
+        .field("outcome", name_of(enclosures.outcome));
   } else if (options.output != "-") {
     report.text(fmt::format("{}: {} x {} pixels, {}{:.1f} % of {} rays hit", options.output, size.width,
                             size.height, triangles == 0 ? "" : fmt::format("{} triangles, ", triangles),
                             100 * static_cast<double>(picture.hits) / static_cast<double>(picture.rays),
                             picture.rays));
-    if (!enclosures.reached) {
-      report.text(fmt::format(
-          "the tolerance was not reached everywhere: budget, levels, rounding, or {} enclosures that "
-          "can be drawn",
-          max_enclosures));
+    if (enclosures.outcome != Outcome::complete) {
+      report.text(
+          fmt::format("the error was not reached everywhere: budget, levels, rounding, or {} enclosures that "
+                      "can be drawn",
+                      max_enclosures));
     }
   }
-  return report.finish(enclosures.reached, {&file});
+  return report.finish(enclosures.outcome == Outcome::complete, {&file});
 }
 
 }  // namespace
@@ -582,12 +584,13 @@ Command render_command() {
            "Write a line at the lower left, such as the verdict; may be repeated");
   list.add(Group::own, "--enclosures", &options->enclosures,
            "Draw the enclosures of the surfaces and curves, translucent");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Split enclosures until each radius is at most half of this; mesh units or percent (1%)")
+  list.add(Group::own, "--error LENGTH", &options->error,
+           "Split enclosures until each radius is at most half of this; mesh units or percent, such as 1%")
+      .formerly("--tolerance")
       .needs("--enclosures");
   list.add(Group::own, "--level N", &options->level, "Split every patch or edge N times, 0 to 12")
       .between(0, 12)
-      .excludes("--tolerance")
+      .excludes("--error")
       .needs("--enclosures");
   list.add(Group::own, "--colour NAME", &options->colour,
            "Surface colours: plain; kind: grey for regular polynomial patches; level: number of splits; "

@@ -78,7 +78,7 @@ std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& 
           // The far edge is met exactly: u + v rounds to at most 1.
           const double v = static_cast<double>(j) / steps,
                        u = std::fmin(static_cast<double>(i) / steps, 1 - v);
-          points[at] = units(part.pose(), evaluate_at(TriangleParameter{u, v}).position);
+          points[at] = units(part.pose(), evaluate_at(TriangleParameter{u, v}).point);
         }
       }
     }

@@ -8,9 +8,9 @@
 #include <picture/camera.h>
 #include <picture/polyhedron.h>
 #include <picture/scene.h>
-#include <snug/monitor.h>
-#include <snug/motion.h>
+#include <snug/geometry.h>
 #include <snug/query/bound.h>
+#include <snug/run.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug::command {

@@ -348,11 +348,10 @@ Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMoni
   refuse_curves(control, mesh.options.scheme, mesh.file);
   std::optional<Surface> surface;
   naming(mesh.file, [&] {
-    SurfaceOptions how = options_for(mesh, control);
-    how.threads = 1;
-    how.monitor = monitor;
-    surface.emplace(std::move(control), how);
-    surface->prepare();  // with the file's name where that fails
+    const SurfaceOptions how = options_for(mesh, control);
+    const Run run{.threads = 1, .monitor = &monitor};
+    surface.emplace(std::move(control), how, run);
+    surface->prepare(run);  // with the file's name where that fails
   });
   note_smoothing(*surface, mesh.file, mesh.options, mesh.options.scheme);
   return *surface;

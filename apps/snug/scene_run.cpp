@@ -483,7 +483,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
   Results results(loaded_, report);
   results.begin(question, options_.scene);
   const bool json = report.json() || journal.has_value();
-  SceneBroadPhase broad(scene, question.margin, question.all_pairs, options_.threads, monitor_);
+  SceneBroadPhase broad(scene, question.margin, question.all_pairs, run_of(options_, monitor_));
   Workers<Workspace> workers(Workspace::of_this_thread(), options_.threads);
   std::vector<int> idle;
   const std::size_t wanted = pairs_of_a_batch * static_cast<std::size_t>(ranks_ ? ranks_->size() : 1);

@@ -1,4 +1,4 @@
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <fmt/core.h>
 
@@ -19,18 +19,19 @@ struct Options : CommonOptions {
 
 void write_json(JsonWriter& json, const SelfContact& found, std::optional<double> tolerance,
                 const char* owner) {
-  json.field("verdict", name_of(found.verdict));
-  if (tolerance) json.field("tolerance", *tolerance).field("radius", found.radius);
+  json.field("verdict", name_of(found.verdict)).field("outcome", name_of(found.outcome));
+  if (tolerance) json.field("within", *tolerance).field("radius", found.radius);
   json.key("pairs").begin_array();
   for (const SelfContactPair& pair : found.pairs) {
     json.begin_object().field("verdict", name_of(pair.verdict));
     json.key("at").begin_array();
-    for (const SurfaceParameter& at : pair.at) {
+    for (const LimitPoint& point : pair.points) {
+      const Place& at = *point.at;
       json.begin_object().field(owner, at.owner).field("corner", at.corner);
       json.field("u", at.u).field("v", at.v).end_object();
     }
     json.end_array().key("witness").begin_array();
-    for (const Point3& p : pair.points) json.value(p);
+    for (const LimitPoint& point : pair.points) json.value(point.point);
     json.end_array().key("distance").begin_array();
     json.value(pair.distance.lower).value(pair.distance.upper).end_array().end_object();
   }
@@ -49,9 +50,9 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
   constexpr std::size_t max_lines = 10;
   for (std::size_t i = 0; i < std::min(max_lines, found.pairs.size()); ++i) {
     const SelfContactPair& pair = found.pairs[i];
-    const Point3& p = pair.points[0];
+    const Point3& p = pair.points[0].point;
     std::string line = fmt::format("{:<12}  {} {} and {}, at {} {} {}", name_of(pair.verdict), owner,
-                                   pair.at[0].owner, pair.at[1].owner, p.x, p.y, p.z);
+                                   pair.points[0].at->owner, pair.points[1].at->owner, p.x, p.y, p.z);
     if (pair.verdict == SelfVerdict::near) line += fmt::format(", at most {} apart", pair.distance.upper);
     report.text(line);
   }
@@ -62,26 +63,24 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
 
 ExitStatus run(const Options& options) {
   SelfContactOptions wanted;
-  wanted.budget = options.budget;
-  wanted.threads = options.threads;
   std::optional<Length> tolerance, radius;
-  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
+  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--within");
   if (!options.radius.empty()) radius = parse_length(options.radius, "--radius");
-  if (radius && !tolerance) throw UsageError("--radius needs --tolerance");
+  if (radius && !tolerance) throw UsageError("--radius needs --within");
   const Surface surface = read_surface(options.mesh, options, options.scheme);
-  if (tolerance) wanted.tolerance = tolerance->in_mesh_units(surface.size());
+  if (tolerance) wanted.within = tolerance->in_mesh_units(surface.size());
   if (radius) wanted.radius = radius->in_mesh_units(surface.size());
-  Report report("self", options);
+  Report report("self-contact", options);
   SelfContact found;
   {
     ProgressBar bar("looking", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] { found = self_contact(surface, wanted, monitor); });
+    naming(options.mesh, [&] { found = self_contact(surface, wanted, run_of(options, monitor)); });
   }
   report.heads({options.mesh}, {name_of(surface.scheme())});
   const char* const owner = surface.traits().owner();
-  if (report.json()) write_json(report.write(), found, wanted.tolerance, owner);
-  write_text(report, found, wanted.tolerance, owner);
+  if (report.json()) write_json(report.write(), found, wanted.within, owner);
+  write_text(report, found, wanted.within, owner);
   return report.finish(found.verdict != SelfVerdict::undecided);
 }
 
@@ -89,24 +88,30 @@ ExitStatus run(const Options& options) {
 
 Command self_command() {
   auto options = std::make_shared<Options>();
-  options->budget = SelfContactOptions{}.budget;
+  options->max_splits = 1'000'000;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
-  list.add(Group::own, "--tolerance T", &options->tolerance,
-           "Also decide whether points at most T apart (mesh units, or percent of the size) are far apart "
-           "along the surface");
-  list.add(Group::own, "--radius R", &options->radius,
-           "Points more than R apart along the surface are far apart; at least 2 T, default 4 T");
-  list.add(Group::effort, "--budget N", &options->budget, "Compare at most N stars and pairs of pieces")
+  list.add(Group::own, "--within LENGTH", &options->tolerance,
+           "Also decide whether points at most this far apart (mesh units, or percent of the size) are far "
+           "apart "
+           "along the surface")
+      .formerly("--tolerance");
+  list.add(Group::own, "--radius LENGTH", &options->radius,
+           "Points farther apart than this along the surface are far apart; at least twice --within, default "
+           "4 times");
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
+           "Compare at most N stars and pairs of pieces")
+      .formerly("--budget")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
-  return {
-      "self",
-      Topic::one_surface,
-      "Does a limit surface intersect itself, or come near itself?",
-      {"snug self pawn.obj", "snug self pawn.obj --tolerance 1%", "snug self part.stl --sharp auto --json"},
-      std::move(list),
-      [options] { return run(*options); }};
+  return {"self-contact",
+          Topic::one_surface,
+          "Does a limit surface intersect itself, or come near itself?",
+          {"snug self-contact pawn.obj", "snug self-contact pawn.obj --within 1%",
+           "snug self-contact part.stl --sharp auto --json"},
+          std::move(list),
+          [options] { return run(*options); },
+          "self"};
 }
 
 }  // namespace snug::command

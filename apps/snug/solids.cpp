@@ -6,7 +6,7 @@
 namespace snug::command {
 
 void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner) {
-  json.key("inner");
+  json.key("contained");
   inner ? json.value(*inner == 0 ? "a" : "b") : json.null();
 }
 
@@ -19,16 +19,16 @@ void note_nesting(const CommonOptions& options, const PlacedSurface& a, const Pl
   const Notes notes = notes_for(options);
   if (!notes || a.surface().open_reason() || b.surface().open_reason()) return;
   const Collision found =
-      collide(a, b, {.witness = WitnessKind::none, .solid = true, .measure = false}, monitor);
-  if (found.inner) {
-    notes(inner_sentence(*found.inner).append(", but the surfaces do not meet; --solid compares solids"));
+      collide(a, b, {.witness = WitnessKind::none, .solid = true, .measure = false}, {.monitor = &monitor});
+  if (found.contained) {
+    notes(inner_sentence(*found.contained).append(", but the surfaces do not meet; --solid compares solids"));
   }
 }
 
 void write_penetration(JsonWriter& json, const Penetration& found) {
   json.key("penetration").begin_object().key("depth").begin_array();
   json.value(found.depth.lower).value(found.depth.upper).end_array();
-  json.field("translation", found.translation).field("reached", found.reached).end_object();
+  json.field("translation", found.translation).field("outcome", name_of(found.outcome)).end_object();
 }
 
 std::string penetration_sentence(const Penetration& found) {

@@ -9,7 +9,7 @@
 
 namespace snug::command {
 
-/// "inner": "a" or "b", the part that lies in the other one, or null.
+/// "contained": "a" or "b", the part that lies in the other one, or null.
 void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 
 /// "B or a part of it lies inside A".
@@ -19,7 +19,7 @@ void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 void note_nesting(const CommonOptions& options, const PlacedSurface& a, const PlacedSurface& b,
                   const WorkMonitor& monitor);
 
-/// "penetration": {depth, translation, reached}, and as a sentence.
+/// "penetration": {depth, translation, outcome}, and as a sentence.
 void write_penetration(JsonWriter& json, const Penetration& found);
 [[nodiscard]] std::string penetration_sentence(const Penetration& found);
 

@@ -44,16 +44,17 @@ ExitStatus run(const Options& options) {
   Scheme scheme{};
   naming(options.mesh, [&] {
     ProgressBar bar("subdividing " + options.mesh, options.quiet);
+    const WorkMonitor monitor = bar.monitor();
     if (curves) {
-      result =
-          subdivide_curves(mesh, curve_degree(options.degree), options.level, options.limit, bar.monitor());
+      result = subdivide_curves(mesh, curve_degree(options.degree), options.level, options.limit,
+                                {.monitor = &monitor});
       return;
     }
     const SurfaceOptions how = surface_options(options, options.scheme, mesh);
     scheme = *how.scheme;
     // Also of a mesh without a limit surface, which no Surface can have.
     const SchemeOptions rules = rules_for(mesh, scheme, how.boundary);
-    result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
+    result = subdivide(std::move(mesh), rules, options.level, options.limit, {.monitor = &monitor});
   });
   if (!curves && format_of(options.output).scheme) result.tags.scheme = scheme;
   AtomicFile file(options.output);

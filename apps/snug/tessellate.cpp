@@ -13,11 +13,10 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, tolerance, max_edge, max_thickness, eye;
+  std::string mesh, error, max_edge, max_thickness, eye;
   std::optional<std::uint64_t> max_triangles;
   double max_angle = 0, eye_angle = 0.02;
   bool coarsen = false;
-  std::uint64_t most = TessellateOptions{}.budget;
 };
 
 std::optional<double> length_of(const std::string& text, const char* option, double size) {
@@ -32,14 +31,14 @@ void require_options(const Options& options) {
   }
   const bool other_goal = !options.max_edge.empty() || !options.max_thickness.empty() ||
                           !options.eye.empty() || options.max_triangles || options.max_angle > 0;
-  if (options.tolerance.empty() && !other_goal) {
+  if (options.error.empty() && !other_goal) {
     throw UsageError(
-        "tessellate: give --tolerance, --max-triangles, --max-edge, --max-angle, --max-thickness or --eye");
+        "tessellate: give --error, --max-triangles, --max-edge, --max-angle, --max-thickness or --eye");
   }
-  if (options.coarsen && (options.tolerance.empty() || other_goal)) {
-    throw UsageError("tessellate: --coarsen goes with --tolerance, and no other goal");
+  if (options.coarsen && (options.error.empty() || other_goal)) {
+    throw UsageError("tessellate: --coarsen goes with --error, and no other goal");
   }
-  if (!options.tolerance.empty()) static_cast<void>(parse_length(options.tolerance, "--tolerance"));
+  if (!options.error.empty()) static_cast<void>(parse_length(options.error, "--error"));
   if (!options.max_edge.empty()) static_cast<void>(parse_length(options.max_edge, "--max-edge"));
   if (!options.max_thickness.empty())
     static_cast<void>(parse_length(options.max_thickness, "--max-thickness"));
@@ -50,7 +49,7 @@ void require_options(const Options& options) {
 
 TessellateOptions how_to(const Options& options, const Surface& surface) {
   TessellateOptions how;
-  how.tolerance = length_of(options.tolerance, "--tolerance", surface.size());
+  how.error = length_of(options.error, "--error", surface.size());
   how.max_edge = length_of(options.max_edge, "--max-edge", surface.size());
   how.max_thickness = length_of(options.max_thickness, "--max-thickness", surface.size());
   if (!options.eye.empty()) {
@@ -59,8 +58,6 @@ TessellateOptions how_to(const Options& options, const Surface& surface) {
   }
   if (options.max_angle > 0) how.max_angle = options.max_angle;
   how.max_triangles = options.max_triangles;
-  how.budget = options.most;
-  how.threads = options.threads;
   how.single_precision = format_of(options.output).floats;
   how.normals = format_of(options.output).normals;
   return how;
@@ -82,16 +79,16 @@ void write_summary(Report& report, const Options& options, const Tessellation& r
     JsonWriter& json = report.write();
     json.field("vertices", result.positions.size()).field("triangles", result.triangles.size());
     json.field("error_bound", result.error_bound).field("position_error", result.position_error);
-    json.field("reached", result.reached);
+    json.field("outcome", name_of(result.outcome));
   }
   if (options.output == "-") return;
   report.text(fmt::format("{}: {} vertices, {} triangles within {} of the limit surface, both ways",
                           options.output, result.positions.size(), result.triangles.size(),
                           text_at_most(result.error_bound, true)));
-  if (result.reached) return;
-  report.text(options.max_triangles && *options.max_triangles <= options.most
-                  ? "the tolerance was not reached: give more --max-triangles, or a larger --tolerance"
-                  : "not all that was asked for was reached: give a larger --budget or --tolerance");
+  if (result.outcome == Outcome::complete) return;
+  report.text(options.max_triangles && *options.max_triangles <= options.max_splits
+                  ? "the error was not reached: give more --max-triangles, or a larger --error"
+                  : "not all that was asked for was reached: give a larger --max-splits or --error");
 }
 
 ExitStatus run(const Options& options) {
@@ -104,27 +101,31 @@ ExitStatus run(const Options& options) {
   naming(options.mesh, [&] {
     ProgressBar bar((options.coarsen ? "simplifying " : "tessellating ") + options.mesh, options.quiet);
     const TessellateOptions how = how_to(options, surface);
-    result =
-        options.coarsen ? coarsened(surface, how, bar.monitor()) : tessellate(surface, how, bar.monitor());
+    const WorkMonitor monitor = bar.monitor();
+    const Run run = run_of(options, monitor);
+    result = options.coarsen ? coarsened(surface, how, run) : tessellate(surface, how, run);
   });
   AtomicFile file(options.output);
   write_facets(mesh_of(result), file, options.output, options, result.normals);
   report.heads({options.mesh}, {name_of(surface.scheme())});
   write_summary(report, options, result);
-  return report.finish(result.reached, {&file});
+  return report.finish(result.outcome == Outcome::complete, {&file});
 }
 
 }  // namespace
 
 Command tessellate_command() {
   auto options = std::make_shared<Options>();
+  options->max_splits = 5'000'000;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Largest distance between limit surface and triangles, either way; mesh units or percent (0.1%)");
+  list.add(Group::own, "--error LENGTH", &options->error,
+           "Largest distance between limit surface and triangles, either way; mesh units or percent, such as "
+           "0.1%")
+      .formerly("--tolerance");
   list.add(Group::own, "--max-triangles N", &options->max_triangles,
-           "Use at most N triangles, with the smallest error found, but not below --tolerance");
+           "Use at most N triangles, with the smallest error found, but not below --error");
   list.add(Group::own, "--max-edge LENGTH", &options->max_edge, "Longest edge; mesh units or percent");
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle between the limit normals at corners of a triangle; 0 for any")
@@ -137,14 +138,15 @@ Command tessellate_command() {
            "Largest visible error in degrees: field of view / pixels")
       .between(1e-9, 45);
   list.add(Group::own, "--coarsen", &options->coarsen,
-           "Allow fewer triangles than faces: simplify, then prove that the result is within the tolerance");
+           "Allow fewer triangles than faces: simplify, then prove that the result is within the error");
   add_common_options(list, *options);
-  list.add(Group::effort, "--budget N", &options->most,
-           "At most N triangles; if more are needed, report the bound that is proved and exit with status 5");
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
+           "At most N triangles; if more are needed, report the bound that is proved and exit with status 5")
+      .formerly("--budget");
   return {"tessellate",
           Topic::files,
           "Write triangles within a proved distance of the limit surface",
-          {"snug tessellate pawn.obj --tolerance 0.1% -o pawn.ply",
+          {"snug tessellate pawn.obj --error 0.1% -o pawn.ply",
            "snug tessellate pawn.obj --max-triangles 5000 -o pawn.glb"},
           std::move(list),
           [options] { return run(*options); }};

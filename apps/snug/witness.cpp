@@ -1,11 +1,13 @@
 #include "witness.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <snug/evaluate.h>
 
 namespace snug::command {
 
-void write_place(JsonWriter& json, const PlacedSurface& surface, const SurfaceParameter& at) {
+void write_place(JsonWriter& json, const PlacedSurface& surface, const Place& at) {
   const SchemeTraits& traits = surface.surface().traits();
   json.field(traits.owner(), at.owner);
   if (!traits.triangular) json.field("corner", at.corner);
@@ -23,27 +25,28 @@ void write_stats(JsonWriter& json, const SearchStats& stats) {
   json.field("evaluations", stats.evaluations).field("splits", stats.splits).end_object();
 }
 
-void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places) {
-  json.key("witness_at");
-  if (places == nullptr) {
-    json.null();
+void write_witness(JsonWriter& json, const Sides& sides, const WitnessPoints* witness) {
+  if (witness == nullptr) {
+    for (const char* field : {"witness", "witness_error", "witness_at"}) json.key(field).null();
     return;
   }
-  json.begin_array();
+  const auto& [a, b] = *witness;
+  json.key("witness").begin_array().value(a.point).value(b.point).end_array();
+  json.field("witness_error", std::max(a.error, b.error));
+  json.key("witness_at").begin_array();
   for (std::size_t s = 0; s < 2; ++s) {
-    if (!(*places)[s]) {
+    if (!(*witness)[s].at) {
       json.null();
       continue;
     }
     json.begin_object();
-    write_place(json, sides[s], *(*places)[s]);
+    write_place(json, sides[s], *(*witness)[s].at);
     json.end_object();
   }
   json.end_array();
 }
 
-std::vector<std::string> witness_lines(const Sides& sides, const std::array<Point3, 2>& witness,
-                                       const WitnessPlaces& places) {
+std::vector<std::string> witness_lines(const Sides& sides, const WitnessPoints& witness) {
   const auto line = [](const std::string& on, const std::string& x, const std::string& y,
                        const std::string& z, const std::string& place) {
     return fmt::format("  {:<2}  {:>12}  {:>12}  {:>12}  {}", on, x, y, z, place);
@@ -51,14 +54,14 @@ std::vector<std::string> witness_lines(const Sides& sides, const std::array<Poin
   const auto number = [](double x) { return fmt::format("{:.8g}", x); };
   std::vector<std::string> lines{line("on", "x", "y", "z", "place")};
   for (std::size_t s = 0; s < 2; ++s) {
-    if (!places[s]) continue;
-    const SurfaceParameter& at = *places[s];
+    if (!witness[s].at) continue;
+    const Place& at = *witness[s].at;
+    const Point3& p = witness[s].point;
     const SchemeTraits& traits = sides[s].surface().traits();
     const std::string place =
         fmt::format("{} {}{} u {:.6g} v {:.6g}", traits.owner(), at.owner,
                     traits.triangular ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
-    lines.push_back(
-        line(s == 0 ? "A" : "B", number(witness[s].x), number(witness[s].y), number(witness[s].z), place));
+    lines.push_back(line(s == 0 ? "A" : "B", number(p.x), number(p.y), number(p.z), place));
   }
   return lines;
 }

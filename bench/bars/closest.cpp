@@ -39,7 +39,7 @@ std::vector<Point3> near_surface(const LimitSurface& surface, std::size_t count)
   for (Point3& p : points) {
     const auto face = static_cast<std::uint32_t>(random() % surface.face_count());
     const double u = 0.5 * (1 + unit(random)), v = (1 - u) * 0.5 * (1 + unit(random));
-    p = evaluator({face, 0, u, v}).position;
+    p = evaluator({face, 0, u, v}).point;
     for (std::size_t k = 0; k < 3; ++k) p[k] += near_reach * unit(random);
   }
   return points;

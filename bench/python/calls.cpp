@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   });
   std::vector<snug::Point3> points;
   for (int i = 0; i < point_count; ++i) points.push_back({2.0 * i / point_count - 1, 0.75, 0.5});
-  const double closest = seconds([&] { sum += snug::closest_points(a, points).back().distance.lower; });
+  const double closest = seconds([&] { sum += snug::closest_point(a, points).back().distance.lower; });
   std::printf("{\"call\": %.9g, \"batch\": %.9g, \"closest\": %.9g, \"sum\": %.17g}\n", call / calls, batch,
               closest, sum);
 }

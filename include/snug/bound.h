@@ -12,13 +12,10 @@
 namespace snug {
 
 struct BoundOptions {
-  /// Split until each radius is at most half of this, in mesh units.
-  std::optional<double> tolerance{};
-  /// Without a tolerance: split every patch this many times. The first split of a face into quads counts.
+  /// Split until each radius is at most half of this, in mesh units: then no set is thicker than it.
+  std::optional<double> error{};
+  /// Without `error`: split every patch this many times. The first split of a face into quads counts.
   unsigned level = 0;
-  /// Most splits in total, spent patch by patch. Memory: 2 kB each in the patches that are in work.
-  std::uint64_t budget = 1'000'000;
-  int threads = 0;       ///< 0: all cores
   bool normals = false;  ///< fill PatchEnclosure::normals
 };
 
@@ -56,21 +53,21 @@ struct BoundSummary {
   std::uint64_t count = 0;
   double max_radius = 0;
   std::uint64_t splits = 0;
-  bool reached = true;  ///< false if the budget, 60 levels or rounding ended splitting before the tolerance
+  Outcome outcome = Outcome::complete;  ///< `at_rounding` also at 60 levels
 };
 
 /// Enclosures of the whole limit surface, made by its SurfaceOptions::bounds and passed to `sink` patch by patch.
 ///
 /// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, and in the union
-///            of their interval triangles, rounding included, even if `reached` is false. At every point of a
+///            of their interval triangles, rounding included, whatever the outcome. At every point of a
 ///            piece with a cone the limit surface has a normal, and the cone contains it.
-/// Errors:    InputError: (value) for a tolerance that is not finite and positive or a level above 60,
+/// Budget:    1,000,000 splits in total, spent patch by patch; 2 kB each in the patches that are in work.
+/// Errors:    InputError: (value) for an error that is not finite and positive or a level above 60,
 ///            (unrepresentable) if a result does not fit a double; whatever `sink` throws. Interrupted.
 /// Cost:      3 to 5 microseconds per piece of a regular patch, twice that with normals; a tenth to half a
 ///            millisecond more beside extraordinary vertices. Memory does not grow with the number of patches.
 SNUG_API BoundSummary bound(const Surface& surface, const BoundOptions& options,
-                            const std::function<void(const PatchEnclosure&)>& sink,
-                            const WorkMonitor& monitor = {});
+                            const std::function<void(const PatchEnclosure&)>& sink, const Run& run = {});
 
 /// Offset triangles of whole patches, updated as control points move while connectivity stays the same. Also the
 /// fastest way to bound a large mesh once.
@@ -79,7 +76,7 @@ SNUG_API BoundSummary bound(const Surface& surface, const BoundOptions& options,
 class SNUG_API PatchBounds {
  public:
   /// Prepares everything that depends only on connectivity. Uses the surface's BoundMethod.
-  explicit PatchBounds(const Surface& surface, int threads = 0);
+  explicit PatchBounds(const Surface& surface, const Run& run = {});
   ~PatchBounds();
   PatchBounds(PatchBounds&&) noexcept;
   PatchBounds& operator=(PatchBounds&&) noexcept;
@@ -94,14 +91,14 @@ class SNUG_API PatchBounds {
   /// Errors:    InputError: (value) unless points.size() is the number of vertices of the mesh and
   ///            out.size() == patches().size(); (refused) if a point that a face uses is not finite or a
   ///            result does not fit a double, and the contents of `out` are then unspecified.
-  void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
+  void update(std::span<const Point3> points, std::span<OffsetTriangle> out, const Run& run = {.threads = 1});
 
   /// Boxes of all patches for motion blur: every limit point of a patch is in its box while the control points
   /// move along lines from `begin` to `end`, both ends and rounding included. Errors likewise.
   /// Cost:      that of two calls of the other update(). Memory: 96 bytes per patch from the first call on.
   /// Source:    docs/derivations/moving.md.
   void update(std::span<const Point3> begin, std::span<const Point3> end, std::span<Box3> out,
-              int threads = 1);
+              const Run& run = {.threads = 1});
 
  private:
   struct Inside;

@@ -21,16 +21,15 @@ enum class Verdict : std::uint8_t {
 /// The points that an answer comes with.
 enum class WitnessKind : std::uint8_t {
   none,         ///< none, the quickest
-  approximate,  ///< near the surfaces: witness_error tells how near
+  approximate,  ///< near the surfaces: LimitPoint::error says how near
   exact,        ///< on the surfaces, up to rounding
 };
 
 struct CollideOptions {
-  /// >= 0, mesh units. With 0 only proofs of contact or separation count. Default: 0.1 % of the larger
-  /// surface's size.
+  /// >= 0, mesh units: slack in which contact need not be decided. With 0 only proofs of contact or separation count.
+  /// Default: 0.1 % of the larger surface's size.
   std::optional<double> tolerance{};
   double margin = 0;                         ///< >= 0, mesh units
-  std::uint64_t budget = 1'000'000;          ///< most splits; memory: 200 bytes each
   WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
   bool prove_contact = true;                 ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
@@ -47,22 +46,19 @@ struct SearchStats {
   std::uint64_t splits = 0;          ///< pieces split or taken from the cache already split
 };
 
-/// Parameters of the witnesses on A and on B; empty where a witness has been located on the other surface
-/// only.
-using WitnessPlaces = std::array<std::optional<SurfaceParameter>, 2>;
+/// Points of A and of B; LimitPoint::at is empty where a point is known to lie on the other surface only.
+using WitnessPoints = std::array<LimitPoint, 2>;
 
 /// The answer to "do these surfaces touch?", in mesh units and world coordinates.
 struct Collision {
   Verdict verdict = Verdict::undecided;
   /// Contains the distance. The upper end is infinite if no pair of points was near enough to matter.
   Interval distance{0, std::numeric_limits<double>::infinity()};
-  std::optional<std::array<Point3, 2>> witness;  ///< the two closest points found, on A and on B
-  /// Upper bound, per coordinate, of the distance between a witness and the limit point it stands for.
-  double witness_error = 0;
-  WitnessPlaces at;  ///< where the witnesses lie, up to a few roundings; see normal_at()
+  std::optional<WitnessPoints> witness;  ///< the two closest points found
   /// Set with `solid` if no crossing was proved but a point of a surface inside the other solid: 0 if it is a
   /// point of A's surface, 1 if of B's. Both witnesses are then that point.
-  std::optional<std::size_t> inner;
+  std::optional<std::size_t> contained;
+  Outcome outcome = Outcome::complete;  ///< `complete` unless the verdict is `undecided`
   SearchStats stats;
 };
 
@@ -72,26 +68,23 @@ struct Collision {
 ///            distance = 0 (or solids with a common point), all in exact arithmetic for the given doubles.
 ///            `distance` contains the distance of the surfaces, with `solid` that of the solids. If several
 ///            verdicts are true, which one is returned depends on the input alone.
+/// Budget:    1,000,000 splits; 200 bytes each.
 /// Errors:    InputError: (value) for a tolerance or margin that is negative or not finite; (unrepresentable)
 ///            if a result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
 ///            `solid` if a surface is not closed. Interrupted.
 /// Cost:      about 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
 /// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
 [[nodiscard]] SNUG_API Collision collide(const PlacedSurface& a, const PlacedSurface& b,
-                                         const CollideOptions& options = {}, const WorkMonitor& monitor = {},
-                                         Workspace& workspace = Workspace::of_this_thread());
-
-/// The same bits for many poses, in the same order, on any number of threads (0: all cores).
+                                         const CollideOptions& options = {}, const Run& run = {});
+/// The same bits for many poses, in the same order.
 [[nodiscard]] SNUG_API std::vector<Collision> collide(const Surface& a, const Surface& b,
                                                       std::span<const PosePair> poses,
-                                                      const CollideOptions& options = {}, int threads = 0,
-                                                      const WorkMonitor& monitor = {});
+                                                      const CollideOptions& options = {},
+                                                      const Run& run = {});
 
 struct PenetrationOptions {
   /// >= 0; the search ends once the width of `depth` is at most this fraction of its upper end.
   double relative = 0.05;
-  std::uint64_t budget =
-      20'000;  ///< most splits for each collision query of the search; memory: 200 bytes each
 };
 
 /// How deeply two solids penetrate: the least length of a translation of B that separates them.
@@ -99,21 +92,21 @@ struct Penetration {
   /// Proved: no translation shorter than the lower end separates them. `translation`, added to B's pose in
   /// double precision, does, and is at most as long as the upper end.
   Interval depth;
-  Vector3 translation;   ///< to be added to B's pose; zero if the solids are separated as they are
-  bool reached = false;  ///< is `depth` as narrow as requested, or 2^-28 of the larger size?
+  Vector3 translation;  ///< to be added to B's pose; zero if the solids are separated as they are
+  /// `complete` if `depth` is as narrow as requested, or 2^-28 of the larger size.
+  Outcome outcome = Outcome::complete;
 };
 
 /// Bounds of the penetration depth of two closed, placed surfaces.
 ///
 /// Guarantee: `depth` contains the depth, and with `translation` added to B's pose the solids are separated. The
 ///            upper end is that of a local minimum, which may be far from the depth where parts interlock.
+/// Budget:    20,000 splits for each collision query of the search; 200 bytes each.
 /// Errors:    InputError: (refused) for a surface that is not closed, (value) for a precision that is negative or
 ///            not finite, (unrepresentable) if no separating translation fits a double. Interrupted.
 /// Cost:      about a hundred collision and closest-point queries, some thousands where the precision is missed.
 /// Source:    derivations/contact.md, "How deep".
 [[nodiscard]] SNUG_API Penetration penetration(const PlacedSurface& a, const PlacedSurface& b,
-                                               const PenetrationOptions& options = {},
-                                               const WorkMonitor& monitor = {},
-                                               Workspace& workspace = Workspace::of_this_thread());
+                                               const PenetrationOptions& options = {}, const Run& run = {});
 
 }  // namespace snug

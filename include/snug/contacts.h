@@ -12,14 +12,11 @@ namespace snug {
 
 struct ContactsOptions {
   /// >= 0, mesh units: points of A and B this close are in contact. Default: 0.1 % of the larger surface's size.
-  std::optional<double> tolerance{};
+  std::optional<double> within{};
   /// > 0, mesh units: largest distance between a curve and the line between two of its points, and the size down
   /// to which boxes are split where no curve is proved. Default: 0.1 % of the larger surface's size.
-  std::optional<double> precision{};
-  /// Most pairs of pieces compared for regions, and the same number again for curves. Memory: 300 bytes each.
-  std::uint64_t budget = 200'000;
+  std::optional<double> error{};
   bool curves = true;  ///< compute intersection curves
-  int threads = 0;     ///< for curves; 0: all cores
 };
 
 /// A patch of A and a patch of B that are in contact.
@@ -36,17 +33,15 @@ struct PatchContact {
 /// one region; two sets that are closer to each other than the size of pieces may be in one region, too.
 struct ContactRegion {
   /// `intersecting`: proved, a curve runs through the region or a crossing was found; `within`: the witnesses are at
-  /// most the tolerance apart; `undecided`: there may be no contact here.
+  /// most `within` apart; `undecided`: there may be no contact here.
   Verdict verdict = Verdict::undecided;
   std::vector<PatchContact> contacts;  ///< in the order of patches
   std::array<std::vector<std::uint32_t>, 2>
       owners;  ///< faces of A and of B (vertices in a dual scheme), sorted
-  /// Contains all points of A and of B in the region that are within the tolerance of each other.
+  /// Contains all points of A and of B in the region that are at most `within` apart.
   Box3 box;
-  Interval distance;              ///< contains the least distance between A and B in the region
-  std::array<Point3, 2> witness;  ///< the two closest points found, on A and on B
-  double witness_error = 0;       ///< as in Collision
-  WitnessPlaces at;               ///< as in Collision; normal_at() gives the normals
+  Interval distance;      ///< contains the least distance between A and B in the region
+  WitnessPoints witness;  ///< the two closest points found, with `at` set; normal_at() gives the normals
 };
 
 /// A box on an intersection curve, between one of its points and the next.
@@ -79,9 +74,10 @@ struct OpenBox {
 };
 
 struct Contacts {
-  /// False if the budget ran out before everything was compared: then nothing is known outside of the lists below.
-  bool complete = false;
-  bool reached = false;  ///< is everything as fine as asked? Else the budget or rounding left coarse pieces
+  /// Not `complete` where pieces stayed coarser than requested.
+  Outcome outcome = Outcome::complete;
+  /// Do the lists below hold all contacts? False if the budget ran out before all pairs had been compared.
+  bool exhaustive = false;
   std::vector<ContactRegion> regions;
   std::vector<IntersectionCurve> curves;
   std::vector<OpenBox> open;
@@ -91,18 +87,17 @@ struct Contacts {
 
 /// All contacts of two placed limit surfaces, and the curves in which they intersect.
 ///
-/// Guarantee: if `complete`, any two points of A and B within the tolerance lie on the two patches of a listed
+/// Guarantee: if `exhaustive`, any two points of A and B at most `within` apart lie on the two patches of a listed
 ///            contact, and any common point lies in a box of a curve or in an open box. A curve that is `proved` and
 ///            `closed` is one closed curve of the intersection. All of this holds for the given doubles, rounding
 ///            included.
-/// Errors:    InputError: (value) for a tolerance that is negative or not finite, and a precision that is not
-///            positive; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has a
+/// Budget:    200,000 pairs of pieces compared for regions, and as many again for curves; 300 bytes each.
+/// Errors:    InputError: (value) for `within` negative or not finite, and `error` not positive; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has a
 ///            limit surface. Interrupted.
 /// Cost:      grows with the contact, not with the meshes: some 20 to 90 ms for curves of 600 to 2,000 points
 ///            (bench/results/contacts.txt).
 /// Source:    derivations/contacts.md.
 [[nodiscard]] SNUG_API Contacts contacts(const PlacedSurface& a, const PlacedSurface& b,
-                                         const ContactsOptions& options = {}, const WorkMonitor& monitor = {},
-                                         Workspace& workspace = Workspace::of_this_thread());
+                                         const ContactsOptions& options = {}, const Run& run = {});
 
 }  // namespace snug

@@ -9,8 +9,8 @@
 
 namespace snug {
 
-/// A limit point in mesh units with its tangents and normal.
-struct SurfacePoint : BoundedPoint {
+/// A limit point in mesh units with its tangents and normal; `at` is the place asked for.
+struct SurfacePoint : LimitPoint {
   /// Derivatives in u and v where they exist, else two limit tangents of no particular length.
   std::array<Vector3, 2> tangents;
   bool differentiable;
@@ -25,12 +25,11 @@ struct SurfacePoint : BoundedPoint {
 /// Errors:    InputError: (value) if the surface has no such owner, corner or parameter, NaN included;
 ///            (unrepresentable) if a coordinate does not fit a double.
 /// Cost:      half a microsecond; about 2 near extraordinary corners.
-[[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
+[[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const Place& at);
 /// The same for many points, in the same order.
 /// Cost:      0.1 to 0.3 microseconds a point where a face has many, in any order.
-[[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface,
-                                                          std::span<const SurfaceParameter> at,
-                                                          int threads = 0);
+[[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface, std::span<const Place> at,
+                                                          const Run& run = {});
 
 /// Where evaluate() writes in single precision: three floats x, y, z a point.
 struct FloatPoints {
@@ -44,8 +43,8 @@ struct FloatPoints {
 /// Errors:    likewise; (value) unless `out` has room for three floats a point; (unrepresentable) also if a
 ///            coordinate does not fit a float. `out` is partly written then.
 /// Cost:      positions 30 ns a point where a face has many, with normals 100 ns.
-SNUG_API double evaluate(const Surface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
-                         int threads = 0);
+SNUG_API double evaluate(const Surface& surface, std::span<const Place> at, const FloatPoints& out,
+                         const Run& run = {});
 
 /// A unit normal and its error.
 struct SurfaceNormal {
@@ -54,8 +53,7 @@ struct SurfaceNormal {
 };
 /// The normal of a placed surface at exactly these parameters; empty where there is none.
 /// Errors, Cost: those of evaluate().
-[[nodiscard]] SNUG_API std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface,
-                                                              const SurfaceParameter& at);
+[[nodiscard]] SNUG_API std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface, const Place& at);
 
 /// How far the limit surface may be from the faces of its control mesh, in mesh units.
 ///
@@ -66,7 +64,7 @@ struct SurfaceNormal {
 /// Errors:    InputError (unrepresentable) if a result does not fit a double.
 /// Cost:      1 microsecond a patch.
 /// Source:    derivations/sharp_parts.md.
-[[nodiscard]] SNUG_API std::optional<double> limit_to_faces(const Surface& surface, int threads = 0);
+[[nodiscard]] SNUG_API std::optional<double> limit_to_faces(const Surface& surface, const Run& run = {});
 
 /// The control mesh after `level` steps of subdivision; with `limit` the limit positions of its vertices, in
 /// double precision.
@@ -80,6 +78,6 @@ struct SurfaceNormal {
 ///            does not fit a double. Interrupted.
 /// Cost:      linear in the result.
 [[nodiscard]] SNUG_API ControlMesh subdivided(const Surface& surface, unsigned level, bool limit = false,
-                                              const WorkMonitor& monitor = {});
+                                              const Run& run = {});
 
 }  // namespace snug

@@ -10,12 +10,10 @@
 namespace snug {
 
 struct HullOptions {
-  double tolerance = 0;  ///< > 0, mesh units: largest distance between surface and hull, either way
+  /// > 0, mesh units: largest distance between surface and hull, either way. Default: 1 % of the surface's size.
+  std::optional<double> error{};
   bool inner = true, outer = true;  ///< which hulls to make
-  /// Most triangles of a hull. Memory: 2 to 3 kB each; if hulls fail, up to 10 kB each and 100 MB more.
-  std::uint64_t budget = 1'000'000;
-  int threads = 0;                ///< 0: all cores
-  bool single_precision = false;  ///< round coordinates to floats, for formats that store floats
+  bool single_precision = false;    ///< round coordinates to floats, for formats that store floats
 };
 
 /// Triangles on one side of a limit surface, oriented as its faces; for a closed surface, outward.
@@ -35,7 +33,7 @@ enum class HullFault : std::uint8_t {
   meets_itself,       ///< two facets could not be separated from each other
   meets_other,        ///< the two hulls could not be separated
   not_around,         ///< the outer hull does not enclose the surface, or the surface the inner one
-  too_few_triangles,  ///< the budget is spent, and the hull is not within the tolerance
+  too_few_triangles,  ///< the budget is spent, and the hull is not as near as requested
 };
 [[nodiscard]] SNUG_API const char* name_of(HullFault fault);
 
@@ -49,9 +47,9 @@ struct HullProblem {
 
 struct Hulls {
   std::optional<Hull> inner, outer;
-  bool verified = false;              ///< do all guarantees of hulls() hold?
-  std::vector<HullProblem> problems;  ///< if not, some of the failures
-  bool closed = false;                ///< does the surface bound a solid?
+  Outcome outcome = Outcome::complete;  ///< do all guarantees of hull() hold? Else they may not
+  std::vector<HullProblem> problems;    ///< unless `complete`, some of the failures
+  bool closed = false;                  ///< does the surface bound a solid?
 };
 
 /// Two meshes that sandwich a limit surface. For a closed surface, the inner hull lies inside the solid that it
@@ -59,19 +57,20 @@ struct Hulls {
 /// behind it and one in front, with its border offset; a strip along the border as wide as the gap stays
 /// uncovered.
 ///
-/// Guarantee: if `verified`, no triangle of a hull meets the limit surface, the other hull, or another triangle
+/// Guarantee: if `complete`, no triangle of a hull meets the limit surface, the other hull, or another triangle
 ///            of its own hull except in shared vertices and edges; hull and surface are nowhere farther than
-///            Hull::gap <= tolerance from each other; the solid of a closed surface lies inside the outer hull
+///            Hull::gap <= error from each other; the solid of a closed surface lies inside the outer hull
 ///            and contains the inner one. Everything holds for the returned doubles and, except for a gap below
-///            the tolerance, was proved from them, not from how they were found. A
+///            the error, was proved from them, not from how they were found. A
 ///            surface that touches itself, or whose sheets leave no room for hulls between them, is usually not
-///            `verified`.
-/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half the size, or
+///            `complete`.
+/// Budget:    1,000,000 triangles of a hull; 2 to 3 kB each; if hulls fail, up to 10 kB each and 100 MB more.
+/// Errors:    InputError: (value) for an error that is not finite and positive, above half the size, or
 ///            too small for doubles or floats; (refused), naming two faces, if these run along an edge in the
 ///            same direction, as on a Moebius strip or where three meet; (unrepresentable). Interrupted.
 /// Cost:      50 to 100 microseconds a triangle on one thread; many times that if hulls fail.
 /// Source:    [Wu05, sec. 5.2]; differs: planes of whole facets, verified, derivations/hulls.md.
-[[nodiscard]] SNUG_API Hulls hulls(const Surface& surface, const HullOptions& options,
-                                   const WorkMonitor& monitor = {});
+[[nodiscard]] SNUG_API Hulls hull(const Surface& surface, const HullOptions& options = {},
+                                  const Run& run = {});
 
 }  // namespace snug

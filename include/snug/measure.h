@@ -9,10 +9,8 @@
 namespace snug {
 
 struct MeasureOptions {
-  /// >= 0: relative width of the intervals, see Measures::reached. Default: 0.0001.
+  /// >= 0: relative width of the intervals, see Measures::outcome. Default: 0.0001.
   std::optional<double> relative{};
-  std::uint64_t budget = 10'000'000;  ///< most splits, an equal share for each patch; takes no memory
-  int threads = 0;                    ///< 0: all cores
 };
 
 /// Area of a surface, and volume, centroid and inertia of the solid that it bounds, in mesh units.
@@ -29,16 +27,17 @@ struct Measures {
   /// About the centroid, with density 1 and the coordinate axes: the moments about x, y, z, then the products
   /// xy, yz, zx of the inertia tensor, which are minus the integrals of xy, yz, zx.
   std::optional<std::array<Interval, 6>> inertia;
-  /// True if each interval's width is at most `relative` times: the area; |volume|; for the centroid, the size;
+  /// `complete` if each interval's width is at most `relative` times: the area; |volume|; for the centroid, the size;
   /// for the inertia, the largest entry. Areas, volumes and entries below `relative` times size^2, size^3 and
   /// size^5 count as these.
-  bool reached = false;
+  Outcome outcome = Outcome::complete;
   std::uint64_t splits = 0;
 };
 
 /// Measures of a limit surface.
 ///
-/// Guarantee: each interval contains the exact value for the given doubles, whether the precision is reached or not.
+/// Guarantee: each interval contains the exact value for the given doubles, whatever the outcome.
+/// Budget:    10,000,000 splits, an equal share for each patch; no memory.
 /// Errors:    InputError: (value) for a precision that is negative or not finite; (refused) if no face of
 ///            the mesh has a limit surface, or with Midedge beside a face of several hundred corners;
 ///            (unrepresentable) if a result does not fit a double. Interrupted.
@@ -46,6 +45,6 @@ struct Measures {
 ///            of a patch. Each further digit costs about 0.03 ms a corner.
 /// Source:    derivations/measures.md.
 [[nodiscard]] SNUG_API Measures measure(const Surface& surface, const MeasureOptions& options = {},
-                                        const WorkMonitor& monitor = {});
+                                        const Run& run = {});
 
 }  // namespace snug

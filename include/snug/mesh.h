@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <snug/geometry.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 namespace snug {
 
@@ -145,7 +145,6 @@ struct ReadOptions {
   /// faces or polylines use.
   std::function<double(double size)> weld{};
   Notes notes{};
-  WorkMonitor monitor{};
 };
 
 /// Reads a control mesh. The extension selects the format: .obj, .off, .ply, .stl, .glb or .usda (also .usd, if
@@ -155,7 +154,8 @@ struct ReadOptions {
 /// Notes:     those of the parser, one line about what was welded, and one if creases name no edge of a face.
 /// Errors:    InputError: (unreadable) for a file that cannot be read or parsed, naming the line; those of
 ///            weld(). Interrupted.
-[[nodiscard]] SNUG_API ControlMesh read_mesh(const std::string& path, const ReadOptions& options = {});
+[[nodiscard]] SNUG_API ControlMesh read_mesh(const std::string& path, const ReadOptions& options = {},
+                                             const Run& run = {});
 
 /// The same for the bytes that such a file holds.
 [[nodiscard]] SNUG_API ControlMesh parse_mesh(std::string_view bytes, const std::string& path,
@@ -174,7 +174,6 @@ struct MeshFormat {
 struct WriteOptions {
   std::span<const Vector3> normals{};  ///< of vertices, where the format holds them
   Notes notes{};
-  WorkMonitor monitor{};
 };
 
 /// Writes a control mesh, completely or not at all. The extension selects the format: .obj, .off, .ply
@@ -185,10 +184,11 @@ struct WriteOptions {
 ///            line if the mesh is tagged flat.
 /// Errors:    InputError: (unreadable) for another extension, or if the file cannot be written; (refused) if
 ///            the format cannot hold the faces, such as STL those that are not triangles. Interrupted.
-SNUG_API void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options = {});
+SNUG_API void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options = {},
+                         const Run& run = {});
 /// The bytes of such a file. Errors likewise.
 [[nodiscard]] SNUG_API std::string format_mesh(const ControlMesh& mesh, const std::string& path,
-                                               const WriteOptions& options = {});
+                                               const WriteOptions& options = {}, const Run& run = {});
 
 /// Changes that weld() made to a mesh.
 struct WeldReport {

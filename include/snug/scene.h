@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include <snug/collide.h>
 #include <snug/distance.h>
 
 namespace snug {
@@ -51,8 +50,7 @@ class SNUG_API SceneBroadPhase {
  public:
   /// `margin`: for pairs that Scene::margins does not name; `all`: also return pairs that boxes separate.
   /// Requires:  the scene outlives this object and does not change.
-  explicit SceneBroadPhase(const Scene& scene, double margin = 0, bool all = false, int threads = 0,
-                           const WorkMonitor& monitor = {});
+  explicit SceneBroadPhase(const Scene& scene, double margin = 0, bool all = false, const Run& run = {});
   ~SceneBroadPhase();
   SceneBroadPhase(const SceneBroadPhase&) = delete;
   SceneBroadPhase& operator=(const SceneBroadPhase&) = delete;
@@ -82,13 +80,11 @@ struct SceneCounts {
 
 /// collide() of one pair, for callers that share out pairs themselves. The margin is that of the pair; errors name the parts.
 [[nodiscard]] SNUG_API Collision collide(const Scene& scene, const ScenePair& pair,
-                                         CollideOptions options = {}, const WorkMonitor& monitor = {},
-                                         Workspace& workspace = Workspace::of_this_thread());
+                                         CollideOptions options = {}, const Run& run = {});
 /// distance() of one pair, likewise; empty if it is farther apart than the margin.
 [[nodiscard]] SNUG_API std::optional<Distance> distance(const Scene& scene, const ScenePair& pair,
                                                         const DistanceOptions& options = {},
-                                                        const WorkMonitor& monitor = {},
-                                                        Workspace& workspace = Workspace::of_this_thread());
+                                                        const Run& run = {});
 
 struct PairCollision {
   PartPair parts;
@@ -102,8 +98,7 @@ struct PairCollision {
 /// Errors:    those of SceneBroadPhase and collide(), naming the parts, and whatever `sink` throws.
 /// Cost:      that of SceneBroadPhase, plus collide() for each pair. Memory: in proportion to the pairs of one part.
 SNUG_API SceneCounts collide(const Scene& scene, const CollideOptions& options,
-                             const std::function<void(const PairCollision&)>& sink, int threads = 0,
-                             const WorkMonitor& monitor = {});
+                             const std::function<void(const PairCollision&)>& sink, const Run& run = {});
 
 struct PairDistance {
   PartPair parts;
@@ -114,7 +109,6 @@ struct PairDistance {
 /// Guarantee: each answer is bit-identical to that of distance() for the two parts.
 /// Errors:    those of SceneBroadPhase and distance(); InputError (value) for a limit that is negative or not finite.
 SNUG_API SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& options,
-                              const std::function<void(const PairDistance&)>& sink, int threads = 0,
-                              const WorkMonitor& monitor = {});
+                              const std::function<void(const PairDistance&)>& sink, const Run& run = {});
 
 }  // namespace snug

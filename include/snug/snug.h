@@ -4,19 +4,18 @@
 /// alone, not on threads or earlier queries.
 
 #include <snug/bound.h>
-#include <snug/closest.h>
 #include <snug/collide.h>
 #include <snug/contacts.h>
 #include <snug/deviation.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
+#include <snug/geometry.h>
 #include <snug/hull.h>
 #include <snug/measure.h>
 #include <snug/mesh.h>
-#include <snug/motion.h>
 #include <snug/ray.h>
 #include <snug/scene.h>
-#include <snug/self.h>
+#include <snug/self_contact.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>
 #include <snug/time_of_contact.h>

@@ -9,14 +9,12 @@
 #include <vector>
 
 #include <snug/mesh.h>
-#include <snug/monitor.h>
-#include <snug/motion.h>
 
 namespace snug {
 
 class PlacedSurface;
 class SharedPlan;
-struct SurfaceParameter;
+struct Place;
 class SurfaceData;
 
 /// How pieces of a surface are bounded.
@@ -34,11 +32,9 @@ struct SurfaceOptions {
   /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off
   /// for surfaces that are queried thousands of times. Otherwise the BVH is built only from control points.
   bool tight = false;
-  int threads = 0;  ///< for preparation; 0: all cores
   /// Receives one line where triangles are smoothed although neither `scheme` nor a tag says so, with the result of
   /// limit_to_faces() up to 200,000 faces.
   Notes notes{};
-  WorkMonitor monitor{};
 };
 
 /// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes, lives as long as
@@ -52,7 +48,7 @@ class SNUG_API Surface {
   ///
   /// Errors:    InputError (refused), naming the element and the next step, for a mesh that has no limit
   ///            surface under these rules or is not supported: see docs/guarantees.md. Interrupted.
-  explicit Surface(ControlMesh mesh, const SurfaceOptions& options = {});
+  explicit Surface(ControlMesh mesh, const SurfaceOptions& options = {}, const Run& run = {});
   Surface(const Surface&) noexcept;
   Surface& operator=(const Surface&) noexcept;
   ~Surface();
@@ -66,21 +62,21 @@ class SNUG_API Surface {
   [[nodiscard]] BoundaryRule boundary() const;
   /// Longest side of the bounding box of the vertices that faces use; may overflow to infinity.
   [[nodiscard]] double size() const;
-  /// Faces, or vertices of a dual scheme: see SurfaceParameter::owner.
+  /// Faces, or vertices of a dual scheme: see Place::owner.
   [[nodiscard]] std::size_t owner_count() const;
-  /// Values of SurfaceParameter::corner on an owner. 0 of a vertex that no quad surrounds; 1 for triangles.
+  /// Values of Place::corner on an owner. 0 of a vertex that no quad surrounds; 1 for triangles.
   /// Requires:  owner < owner_count().
   [[nodiscard]] std::size_t corner_count(std::uint32_t owner) const;
   /// Is there a limit point at these parameters?
-  [[nodiscard]] bool has(const SurfaceParameter& at) const;
+  [[nodiscard]] bool has(const Place& at) const;
   /// Different patch topologies, by which bounds are shared.
   [[nodiscard]] std::size_t kind_count() const;
   /// Why it bounds no solid: names an edge whose faces do not run both ways, or a face without a surface.
   /// Empty if it is closed.
   [[nodiscard]] std::optional<std::string> open_reason() const;
-  /// Builds the BVH now, and not at the first query.
+  /// Builds the BVH now, and not at the first query. With the threads of the constructor; `run` only has the monitor.
   /// Errors:    InputError (refused) if no face has a limit surface. Interrupted.
-  void prepare(const WorkMonitor& monitor = {}) const;
+  void prepare(const Run& run = {}) const;
   /// Memory of the surface and its BVH, without the mesh.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -96,7 +92,8 @@ class SNUG_API Surface {
 
 /// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them. Notes of
 /// the reader and of Surface, and errors, name the file.
-[[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {});
+[[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {},
+                                    const Run& run = {});
 
 /// A surface whose control points move while its faces, tags and rules stay the same. Each set of positions is a
 /// Surface of its own, a frame, which reuses the patch topologies and the order of the BVH of earlier frames: only
@@ -147,10 +144,19 @@ class PlacedSurface {
 /// Parameters of a point on a surface. For Loop, (1 - u - v) c0 + u c1 + v c2 on a face. Else (u, v) on a quad, from
 /// corner 0 with u towards corner 1: the face itself if it has four corners (in a dual scheme, the faces around the
 /// vertex), else the quad that the first split makes at `corner`, u along the edge that follows.
-struct SurfaceParameter {
+struct Place {
   std::uint32_t owner = 0;  ///< face; in a dual scheme, vertex
   std::uint32_t corner = 0;
   double u = 0, v = 0;
+  [[gnu::always_inline]] friend bool operator==(const Place&, const Place&) = default;
+};
+
+/// A point that stands for a limit point, and where this lies on its surface, up to a few roundings.
+struct LimitPoint {
+  Point3 point;
+  double error = 0;  ///< upper bound, per coordinate, of |point - limit point|, rounding included
+  std::optional<Place> at{};
+  [[gnu::always_inline]] friend bool operator==(const LimitPoint&, const LimitPoint&) = default;
 };
 
 /// A cache of split pieces and their bounds, filled by queries. It makes later queries on the same surfaces

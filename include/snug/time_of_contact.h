@@ -79,9 +79,6 @@ struct TimeOfContactOptions {
   std::optional<double> tolerance{};
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other is in contact
   bool prove_contact = true;  ///< before returning `within`, try to prove `intersecting`
-  /// Most work in each unit of time: a split of a patch and a pair of nodes followed through an interval count 1, a
-  /// time evaluated 1000; no single time takes more than a sixteenth. Memory: 256 bytes each.
-  std::uint64_t budget = 1'000'000;
 };
 
 /// The first contact of two moving surfaces.
@@ -92,15 +89,12 @@ struct TimeOfContact {
   /// The surfaces have no common point at any time before the lower end. The upper end is infinite if they were
   /// not found to come near each other, as for `separated`, whose lower end is the end of the motion.
   Interval time{0, std::numeric_limits<double>::infinity()};
-  /// True if in `time` no point that could meet the other surface moves by more than the tolerance, or 1e-10 of the
-  /// size, relative to it.
-  bool reached = false;
-  std::optional<std::array<Point3, 2>> witness;  ///< the closest points found at time.upper, on A and on B
-  double witness_error = 0;                      ///< as in Collision
-  WitnessPlaces at;                              ///< as in Collision
-  std::optional<std::size_t> inner;              ///< with `solid`: as in Collision
-  int looks = 0;                                 ///< number of times evaluated
-  bool budget_ended = false;                     ///< with undecided: a larger budget would have gone on
+  /// `complete` if in `time` no point that could meet the other surface moves by more than the tolerance, or 1e-10 of
+  /// the size, relative to it.
+  Outcome outcome = Outcome::complete;
+  std::optional<WitnessPoints> witness;  ///< the closest points found at time.upper
+  std::optional<std::size_t> contained;  ///< with `solid`: as in Collision, at time 0
+  int steps = 0;                         ///< number of times evaluated
   SearchStats stats;
 };
 
@@ -109,6 +103,8 @@ struct TimeOfContact {
 /// Guarantee: the surfaces (with `solid` the solids) have no common point at any time in [0, time.lower), nor at
 ///            time.lower itself unless it is 0 or time.upper; with `separated`, at no time at all. `within`
 ///            holds at time.upper; `intersecting` holds at time.upper or between the ends, for the exact motions.
+/// Budget:    1,000,000 in each unit of time: a split of a patch and a pair of nodes followed through an interval count
+///            1, a time evaluated 1000; no single time takes more than a sixteenth. 256 bytes each.
 /// Requires:  motions of the same duration, or one surface that stays.
 /// Errors:    InputError: (value) for a tolerance that is negative or not finite, and for durations that
 ///            differ; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has
@@ -121,8 +117,7 @@ struct TimeOfContact {
 [[nodiscard]] SNUG_API TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a,
                                                      const Surface& b, const Trajectory& motion_b,
                                                      const TimeOfContactOptions& options = {},
-                                                     const WorkMonitor& monitor = {},
-                                                     Workspace& workspace = Workspace::of_this_thread());
+                                                     const Run& run = {});
 
 /// The same for moving control points: at time s they are (1 - s) times those of the mesh plus s times `end`.
 /// Points of a turning part thus move along chords; split a large rotation into several steps.
@@ -133,7 +128,6 @@ struct TimeOfContact {
 /// Cost:      some dozen distance queries, and a BVH for each (bench/results/contact_time.txt).
 [[nodiscard]] SNUG_API TimeOfContact time_of_contact(const DeformingSurface& a, const DeformingSurface& b,
                                                      const TimeOfContactOptions& options = {},
-                                                     const WorkMonitor& monitor = {},
-                                                     Workspace& workspace = Workspace::of_this_thread());
+                                                     const Run& run = {});
 
 }  // namespace snug

@@ -15,6 +15,7 @@ Places = npt.NDArray[np.int64]
 Number = Union[float, Floats]
 Flag = Union[bool, Bools]
 Index = Union[int, Ids]
+Words = Union[str, List[str]]
 
 Length = Union[float, str, None]
 Pose = Union[npt.ArrayLike, Tuple[npt.ArrayLike, npt.ArrayLike], Sequence[Tuple[npt.ArrayLike, npt.ArrayLike]], None]
@@ -73,7 +74,7 @@ class Surface(_Tagged):
         *,
         relative: Optional[float] = None,
         absolute: Length = None,
-        budget: Optional[int] = None,
+        max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
     ) -> ClosestPoint: ...
@@ -83,21 +84,21 @@ class Surface(_Tagged):
         *,
         relative: Optional[float] = None,
         absolute: Length = None,
-        budget: Optional[int] = None,
+        max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
     ) -> SignedDistance: ...
     def contains(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> Containment: ...
-    def cast_rays(
+    def ray(
         self,
         origins: npt.ArrayLike,
         directions: npt.ArrayLike,
         *,
         query: str = "nearest",
         certified: bool = True,
-        precision: Length = None,
-        tolerance: Length = "0.01%",
-        budget: Optional[int] = None,
+        absolute: Length = None,
+        error: Length = "0.01%",
+        max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
     ) -> Any: ...
@@ -114,16 +115,16 @@ class Surface(_Tagged):
     def bound(
         self,
         *,
-        tolerance: Length = None,
+        error: Length = None,
         level: int = 0,
-        budget: Optional[int] = None,
+        max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
     ) -> Enclosures: ...
     def boxes(self, level: int = 0, *, threads: int = 0) -> Floats: ...
     def tessellate(
         self,
-        tolerance: Length = None,
+        error: Length = None,
         *,
         max_edge: Length = None,
         max_angle: Optional[float] = None,
@@ -133,23 +134,23 @@ class Surface(_Tagged):
         single_precision: bool = False,
         normals: bool = True,
         corners: bool = False,
-        budget: Optional[int] = None,
+        max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
     ) -> Tessellation: ...
     def hull(
         self,
-        tolerance: Union[float, str],
+        error: Length = None,
         *,
         inner: bool = True,
         outer: bool = True,
-        budget: Optional[int] = None,
+        max_splits: Optional[int] = None,
         single_precision: bool = False,
         threads: int = 0,
         progress: Progress = None,
     ) -> Hulls: ...
     def measure(
-        self, *, relative: Optional[float] = None, budget: Optional[int] = None, threads: int = 0, progress: Progress = None
+        self, *, relative: Optional[float] = None, max_splits: Optional[int] = None, threads: int = 0, progress: Progress = None
     ) -> Measures: ...
     def subdivided(self, level: int = 1, limit: bool = False, *, progress: Progress = None) -> Mesh: ...
     def __copy__(self) -> Surface: ...
@@ -163,7 +164,7 @@ class _Pair:
     @property
     def points(self) -> Floats: ...
     @property
-    def point_error(self) -> Number: ...
+    def error(self) -> Number: ...
     @property
     def faces(self) -> Places: ...
     @property
@@ -171,14 +172,16 @@ class _Pair:
     @property
     def parameters(self) -> Floats: ...
     @property
-    def inner(self) -> Union[int, Places]: ...
+    def contained(self) -> Union[int, Places]: ...
     @property
     def stats(self) -> Union[Dict[str, int], List[Dict[str, int]]]: ...
     def __len__(self) -> int: ...
 
 class Collision(_Pair):
     @property
-    def verdict(self) -> Union[str, List[str]]: ...
+    def verdict(self) -> Words: ...
+    @property
+    def outcome(self) -> Words: ...
     @property
     def colliding(self) -> Flag: ...
     @property
@@ -192,7 +195,7 @@ class Collision(_Pair):
 
 class Distance(_Pair):
     @property
-    def reached(self) -> Flag: ...
+    def outcome(self) -> Words: ...
     def __getitem__(self, i: Union[int, slice]) -> Distance: ...
 
 class Penetration:
@@ -203,7 +206,7 @@ class Penetration:
     @property
     def translation(self) -> Floats: ...
     @property
-    def reached(self) -> Flag: ...
+    def outcome(self) -> Words: ...
     def __len__(self) -> int: ...
     def __getitem__(self, i: Union[int, slice]) -> Penetration: ...
 
@@ -226,9 +229,9 @@ class ClosestPoint(_Place):
     @property
     def point(self) -> Floats: ...
     @property
-    def point_error(self) -> Number: ...
+    def error(self) -> Number: ...
     @property
-    def reached(self) -> Flag: ...
+    def outcome(self) -> Words: ...
     def __getitem__(self, i: Union[int, slice]) -> ClosestPoint: ...
 
 class SignedDistance(_Place):
@@ -239,9 +242,9 @@ class SignedDistance(_Place):
     @property
     def point(self) -> Floats: ...
     @property
-    def point_error(self) -> Number: ...
+    def error(self) -> Number: ...
     @property
-    def reached(self) -> Flag: ...
+    def outcome(self) -> Words: ...
     def __getitem__(self, i: Union[int, slice]) -> SignedDistance: ...
 
 class Containment:
@@ -265,13 +268,11 @@ class RayHits:
     @property
     def certified(self) -> Bools: ...
     @property
-    def reached(self) -> Bools: ...
-    @property
     def side(self) -> npt.NDArray[np.int32]: ...
     @property
     def point(self) -> Floats: ...
     @property
-    def point_error(self) -> Floats: ...
+    def error(self) -> Floats: ...
     @property
     def normal(self) -> Floats: ...
     @property
@@ -283,7 +284,7 @@ class RayHits:
     @property
     def v(self) -> Floats: ...
     @property
-    def complete(self) -> Flag: ...
+    def outcome(self) -> Words: ...
     @property
     def certain_hit(self) -> Flag: ...
     @property
@@ -301,7 +302,7 @@ class QuickHit(_Place):
 
 class SurfacePoint:
     @property
-    def position(self) -> Floats: ...
+    def point(self) -> Floats: ...
     @property
     def error(self) -> Number: ...
     @property
@@ -335,7 +336,7 @@ class Enclosures:
     @property
     def pieces(self) -> List[str]: ...
     @property
-    def reached(self) -> bool: ...
+    def outcome(self) -> str: ...
     @property
     def max_radius(self) -> float: ...
     @property
@@ -370,7 +371,7 @@ class Tessellation(_Triangles):
     @property
     def position_error(self) -> float: ...
     @property
-    def reached(self) -> bool: ...
+    def outcome(self) -> str: ...
 
 class Hull(_Triangles):
     @property
@@ -382,7 +383,7 @@ class Hulls:
     @property
     def outer(self) -> Optional[Hull]: ...
     @property
-    def verified(self) -> bool: ...
+    def outcome(self) -> str: ...
     @property
     def closed(self) -> bool: ...
     @property
@@ -399,7 +400,7 @@ class Measures:
     @property
     def inertia(self) -> Optional[Floats]: ...
     @property
-    def reached(self) -> bool: ...
+    def outcome(self) -> str: ...
 
 class OneSidedDistance:
     @property
@@ -411,7 +412,7 @@ class OneSidedDistance:
     @property
     def nearest(self) -> Floats: ...
     @property
-    def point_error(self) -> float: ...
+    def error(self) -> float: ...
     @property
     def face(self) -> int: ...
 
@@ -425,7 +426,7 @@ class Deviation:
     @property
     def outside(self) -> Optional[OneSidedDistance]: ...
     @property
-    def reached(self) -> bool: ...
+    def outcome(self) -> str: ...
 
 def read(
     path: Path,
@@ -451,7 +452,7 @@ def collide(
     solid: bool = False,
     witness: str = "exact",
     measure: bool = True,
-    budget: Optional[int] = None,
+    max_splits: Optional[int] = None,
     threads: int = 0,
     progress: Progress = None,
     rigid: Optional[str] = None,
@@ -465,7 +466,7 @@ def distance(
     relative: Optional[float] = None,
     absolute: Length = None,
     solid: bool = False,
-    budget: Optional[int] = None,
+    max_splits: Optional[int] = None,
     threads: int = 0,
     progress: Progress = None,
     rigid: Optional[str] = None,
@@ -477,7 +478,7 @@ def penetration(
     pose_a: Pose = None,
     pose_b: Pose = None,
     relative: Optional[float] = None,
-    budget: Optional[int] = None,
+    max_splits: Optional[int] = None,
     progress: Progress = None,
     rigid: Optional[str] = None,
 ) -> Penetration: ...
@@ -486,9 +487,9 @@ def deviation(
     candidate: Any,
     *,
     absolute: Length = None,
-    tolerance: Length = None,
+    threshold: Length = None,
     solid: bool = False,
-    budget: Optional[int] = None,
+    max_splits: Optional[int] = None,
     threads: int = 0,
     progress: Progress = None,
 ) -> Deviation: ...

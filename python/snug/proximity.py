@@ -115,7 +115,7 @@ def longest_ray(
         raise ValueError(f"directions[{int(np.argmin(lengths > 0))}] has length 0")
     unit = towards / lengths[:, None]
     own = 1e-8 * surface.size
-    hits = surface.cast_rays(origins + own * unit, unit)
+    hits = surface.ray(origins + own * unit, unit)
     first = np.full(len(origins), np.inf)
     np.minimum.at(first, hits.ray, np.maximum(hits.lower, 0.0) + own)
     return first

@@ -212,4 +212,12 @@ void add_place(AnswerClass<T>& answers, const At& at) {
           "v", [at](const T& t) -> const double& { return at(t).v; }, "Second parameter, (n,).");
 }
 
+/// Adds how the search ended.
+template <class T>
+void add_outcome(AnswerClass<T>& answers) {
+  answers.list(
+      "outcome", [](const T& t) { return py::str(name_of(t.outcome)); },
+      "'complete', 'budget-spent' or 'at-rounding'; of many answers a list. The answer holds in any case.");
+}
+
 }  // namespace snug::python

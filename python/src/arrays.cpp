@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include <snug/error.h>
+#include <snug/run.h>
 
 namespace snug::python {
 namespace {
@@ -126,6 +126,12 @@ int threads_of(const py::object& given) {
   const std::uint64_t threads = count_of(given, 0, "threads");
   if (threads > most) refuse("threads: give at most 4096; 0 takes all cores");
   return static_cast<int>(threads);
+}
+
+Run run_of(const py::object& threads, const py::object& max_splits) {
+  Run run{.threads = threads_of(threads)};
+  if (!max_splits.is_none()) run.max_splits = count_of(max_splits, 0, "max_splits");
+  return run;
 }
 
 }  // namespace snug::python

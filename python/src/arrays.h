@@ -11,6 +11,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <snug/geometry.h>
+#include <snug/run.h>
 
 namespace snug::python {
 
@@ -138,6 +139,8 @@ inline py::tuple pair_of(const Interval& interval) { return py::make_tuple(inter
 [[nodiscard]] std::uint64_t count_of(const py::object& given, std::uint64_t usual, const char* what);
 /// A number of threads; 0: all cores.
 [[nodiscard]] int threads_of(const py::object& given);
+/// The keywords threads and max_splits; None: the default.
+[[nodiscard]] Run run_of(const py::object& threads, const py::object& max_splits = py::none());
 /// A function of snug._convert, which takes what is not an array of doubles.
 [[nodiscard]] py::object convert(const char* function);
 

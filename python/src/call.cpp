@@ -45,7 +45,8 @@ void Call::prepare() {
   if (PyCallable_Check(handler.ptr()) != 0) pythons_handler = PyOS_getsig(SIGINT);
 }
 
-Call::Call(const py::object& progress) {
+Call::Call(const py::object& progress, const Run& run) : run_(run) {
+  run_.monitor = &monitor_;
   monitor_.stop = &stop_;
   if (!progress.is_none()) {
     if (PyCallable_Check(progress.ptr()) == 0)

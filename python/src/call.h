@@ -4,7 +4,7 @@
 #include <exception>
 
 #include <pybind11/pybind11.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 namespace snug::python {
 
@@ -16,19 +16,19 @@ namespace py = pybind11;
 /// the stop flag of the call under way, if any, and then calls Python's. The call ends at its next checkpoint, and Python raises what its handler says.
 class Call {
  public:
-  /// `progress`: None, or callable with the fraction done; from any thread of the library, one at a time.
-  explicit Call(const py::object& progress = py::none());
+  /// `run`: threads and splits. `progress`: None, or callable with the fraction done; from any thread of the library, one at a time.
+  explicit Call(const py::object& progress = py::none(), const Run& run = {});
   ~Call();
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
-  /// work(const WorkMonitor&), called without the GIL. It begins again where a handler of SIGINT did not raise.
+  /// work(const Run&), with a monitor, called without the GIL. It begins again where a handler of SIGINT did not raise.
   template <class Work>
   auto run(const Work& work) {
     for (;;) {
       try {
         const py::gil_scoped_release released;
-        return work(monitor_);
+        return work(run_);
       } catch (const Interrupted&) {
         require_resumed();
       }
@@ -42,6 +42,7 @@ class Call {
   void require_resumed();
 
   WorkMonitor monitor_;
+  Run run_;  // with this monitor
   py::object progress_;
   std::exception_ptr fault_;
   std::atomic<bool> stop_{false};

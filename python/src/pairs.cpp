@@ -37,27 +37,26 @@ double larger_size(const PySurface& a, const PySurface& b) {
 // One answer, or one for each pose.
 template <class T, class One, class Many>
 Answers<T> for_poses(const PySurface& py_a, const PySurface& py_b, const Poses& pose_a, const Poses& pose_b,
-                     const py::object& progress, const One& one, const Many& many) {
+                     const py::object& progress, const Run& run, const One& one, const Many& many) {
   const Surface a = py_a.surface(), b = py_b.surface();  // which an update() meanwhile does not reach
   const std::optional<std::size_t> count = common_count(pose_a, pose_b);
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
-    if (!count) return Answers<T>(one(a.at(pose_a.at(0)), b.at(pose_b.at(0)), monitor));
-    return Answers<T>(many(a, b, pairs_of(pose_a, pose_b, *count), monitor));
+  Call call(progress, run);
+  return call.run([&](const Run& each) {
+    if (!count) return Answers<T>(one(a.at(pose_a.at(0)), b.at(pose_b.at(0)), each));
+    return Answers<T>(many(a, b, pairs_of(pose_a, pose_b, *count), each));
   });
 }
 
 Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
                                     const py::object& pose_b, const py::object& tolerance,
                                     const py::object& margin, bool solid, const py::object& witness,
-                                    bool measure, const py::object& budget, const py::object& threads,
+                                    bool measure, const py::object& max_splits, const py::object& threads,
                                     const py::object& progress, const py::object& rigid) {
   CollideOptions options;
   if (!tolerance.is_none()) options.tolerance = length_of(tolerance, larger_size(a, b), "tolerance");
   if (!margin.is_none()) options.margin = *length_of(margin, larger_size(a, b), "margin");
   options.solid = solid;
   options.measure = measure;
-  options.budget = count_of(budget, options.budget, "budget");
   if (!witness.is_none()) {
     options.witness = named<WitnessKind>(witness,
                                          {{"none", WitnessKind::none},
@@ -65,67 +64,77 @@ Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, cons
                                           {"exact", WitnessKind::exact}},
                                          "witness");
   }
-  const int all_threads = threads_of(threads);
   return for_poses<Collision>(
-      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
-      [&](const PlacedSurface& x, const PlacedSurface& y, const WorkMonitor& monitor) {
-        return collide(x, y, options, monitor);
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress, run_of(threads, max_splits),
+      [&](const PlacedSurface& x, const PlacedSurface& y, const Run& run) {
+        return collide(x, y, options, run);
       },
-      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses,
-          const WorkMonitor& monitor) { return collide(x, y, poses, options, all_threads, monitor); });
+      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses, const Run& run) {
+        return collide(x, y, poses, options, run);
+      });
 }
 
 Answers<Distance> distance_of_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
                                        const py::object& pose_b, const py::object& relative,
-                                       const py::object& absolute, bool solid, const py::object& budget,
+                                       const py::object& absolute, bool solid, const py::object& max_splits,
                                        const py::object& threads, const py::object& progress,
                                        const py::object& rigid) {
   DistanceOptions options;
   options.relative = number_of(relative, "relative");
   options.absolute = length_of(absolute, larger_size(a, b), "absolute");
   options.solid = solid;
-  options.budget = count_of(budget, options.budget, "budget");
-  const int all_threads = threads_of(threads);
   return for_poses<Distance>(
-      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
-      [&](const PlacedSurface& x, const PlacedSurface& y, const WorkMonitor& monitor) {
-        return distance(x, y, options, monitor);
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress, run_of(threads, max_splits),
+      [&](const PlacedSurface& x, const PlacedSurface& y, const Run& run) {
+        return distance(x, y, options, run);
       },
-      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses,
-          const WorkMonitor& monitor) { return distance(x, y, poses, options, all_threads, monitor); });
+      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses, const Run& run) {
+        return distance(x, y, poses, options, run);
+      });
 }
 
 Answers<Penetration> penetration_of_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
                                              const py::object& pose_b, const py::object& relative,
-                                             const py::object& budget, const py::object& progress,
+                                             const py::object& max_splits, const py::object& progress,
                                              const py::object& rigid) {
   PenetrationOptions options;
   options.relative = number_of(relative, "relative").value_or(options.relative);
-  options.budget = count_of(budget, options.budget, "budget");
   return for_poses<Penetration>(
-      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
-      [&](const PlacedSurface& x, const PlacedSurface& y, const WorkMonitor& monitor) {
-        return penetration(x, y, options, monitor);
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress, run_of(py::int_(1), max_splits),
+      [&](const PlacedSurface& x, const PlacedSurface& y, const Run& run) {
+        return penetration(x, y, options, run);
       },
-      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses,
-          const WorkMonitor& monitor) {
+      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses, const Run& run) {
+        const WorkMonitor quiet{.on_progress = {}, .stop = run.monitor->stop};
         std::vector<Penetration> answers;
         answers.reserve(poses.size());
         for (const PosePair& pose : poses) {
-          monitor.report(static_cast<double>(answers.size()) / static_cast<double>(poses.size()));
-          answers.push_back(
-              penetration(x.at(pose.a), y.at(pose.b), options, {.on_progress = {}, .stop = monitor.stop}));
+          run.monitor->report(static_cast<double>(answers.size()) / static_cast<double>(poses.size()));
+          answers.push_back(penetration(x.at(pose.a), y.at(pose.b), options,
+                                        {.monitor = &quiet, .max_splits = run.max_splits}));
         }
         return answers;
       });
 }
 
+// ", budget-spent" and the like.
+std::string note_of(Outcome outcome) {
+  return outcome == Outcome::complete ? "" : std::string(", ") + name_of(outcome);
+}
+
 // What Collision and Distance have in common.
 
-const std::array<Point3, 2>* witness_of(const Collision& answer) {
+const WitnessPoints* witness_of(const Collision& answer) {
   return answer.witness ? &*answer.witness : nullptr;
 }
-const std::array<Point3, 2>* witness_of(const Distance& answer) { return &answer.witness; }
+const WitnessPoints* witness_of(const Distance& answer) { return &answer.witness; }
+
+template <class T>
+std::array<std::optional<Place>, 2> places_of(const T& answer) {
+  const WitnessPoints* const points = witness_of(answer);
+  if (points == nullptr) return {};
+  return {(*points)[0].at, (*points)[1].at};
+}
 
 template <class T>
 void add_common(AnswerClass<T>& answers) {
@@ -139,41 +148,47 @@ void add_common(AnswerClass<T>& answers) {
       .template array<double>(
           "points", {2, 3},
           [](const T& t, double* out) {
-            const std::array<Point3, 2>* const points = witness_of(t);
+            const WitnessPoints* const points = witness_of(t);
             for (std::size_t s = 0; s < 2; ++s) {
-              for (std::size_t k = 0; k < 3; ++k) *out++ = points ? (*points)[s][k] : nan;
+              for (std::size_t k = 0; k < 3; ++k) *out++ = points ? (*points)[s].point[k] : nan;
             }
           },
           "The two closest points found, on A and on B, (n, 2, 3), world coordinates; NaN if there are none.")
-      .view(
-          "point_error", [](const T& t) -> const double& { return t.witness_error; },
+      .template array<double>(
+          "error", {},
+          [](const T& t, double* out) {
+            const WitnessPoints* const points = witness_of(t);
+            *out = points ? std::max((*points)[0].error, (*points)[1].error) : 0;
+          },
           "Upper bound, per coordinate, of the distance from a point to the limit point that it stands for, "
           "(n,).")
       .template array<std::int64_t>(
           "faces", {2},
           [](const T& t, std::int64_t* out) {
-            for (const auto& at : t.at) *out++ = at ? std::int64_t{at->owner} : -1;
+            for (const auto& at : places_of(t)) *out++ = at ? std::int64_t{at->owner} : -1;
           },
           "Faces of the points (of dual schemes vertices), (n, 2) int64; -1 where a point was located on the "
           "other surface only.")
       .template array<std::int64_t>(
           "corners", {2},
           [](const T& t, std::int64_t* out) {
-            for (const auto& at : t.at) *out++ = at ? std::int64_t{at->corner} : -1;
+            for (const auto& at : places_of(t)) *out++ = at ? std::int64_t{at->corner} : -1;
           },
           "Corners of these faces that the parameters belong to, (n, 2) int64; -1 likewise.")
       .template array<double>(
           "parameters", {2, 2},
           [](const T& t, double* out) {
-            for (const auto& at : t.at) {
+            for (const auto& at : places_of(t)) {
               *out++ = at ? at->u : nan;
               *out++ = at ? at->v : nan;
             }
           },
           "Parameters u, v of the points, (n, 2, 2); NaN likewise.")
       .template array<std::int64_t>(
-          "inner", {},
-          [](const T& t, std::int64_t* out) { *out = t.inner ? static_cast<std::int64_t>(*t.inner) : -1; },
+          "contained", {},
+          [](const T& t, std::int64_t* out) {
+            *out = t.contained ? static_cast<std::int64_t>(*t.contained) : -1;
+          },
           "With solid=True: 0 if a point of A's surface lies inside B, 1 the other way round, else -1, (n,) "
           "int64.")
       .list(
@@ -201,7 +216,7 @@ bool truth(const Answers<Collision>& self) {
   const Collision& answer = self.one();
   if (answer.verdict == Verdict::undecided) {
     refuse_undecided("undecided: the distance is " + text_of(answer.distance) +
-                     "; give a larger tolerance or budget");
+                     "; give a larger tolerance or max_splits");
   }
   return colliding(answer);
 }
@@ -218,7 +233,7 @@ bool some(const Answers<Collision>& self, bool wanted) {
   }
   if (undecided > 0) {
     refuse_undecided(std::to_string(undecided) + " of " + std::to_string(self.all().size()) +
-                     " answers are undecided; give a larger tolerance or budget, or see hit.undecided");
+                     " answers are undecided; give a larger tolerance or max_splits, or see hit.undecided");
   }
   return false;
 }
@@ -241,6 +256,7 @@ void add_collision(py::module_& module) {
       "Do two surfaces touch? One answer, or n of them for n poses. bool() is True for 'within' and\n"
       "'intersecting', False for 'separated', and raises UndecidedError for 'undecided'.");
   add_common(answers);
+  add_outcome(answers);
   const auto mask = [&](const char* name, const auto& holds, const char* doc) {
     answers.array<bool>(
         name, {}, [holds](const Collision& t, bool* out) { *out = holds(t); }, doc);
@@ -251,7 +267,7 @@ void add_collision(py::module_& module) {
       "Are they proved to be farther apart than the margin? (n,) bool.");
   mask(
       "undecided", [](const Collision& t) { return t.verdict == Verdict::undecided; },
-      "Was nothing shown within the budget or the precision of doubles? (n,) bool.");
+      "Was nothing shown within max_splits or the precision of doubles? (n,) bool.");
   answers.list(
       "verdict", [](const Collision& t) { return py::str(name_of(t.verdict)); },
       "'separated', 'within', 'intersecting' or 'undecided'; of many answers a list.");
@@ -275,11 +291,8 @@ void add_distance(py::module_& module) {
   AnswerClass<Distance> answers(module, "Distance",
                                 "How far apart two surfaces are: one answer, or n of them for n poses.");
   add_common(answers);
-  answers.view(
-      "reached", [](const Distance& t) -> const bool& { return t.reached; },
-      "Is the interval as narrow as requested? (n,) bool. It contains the distance in any case.");
-  answers.repr(
-      [](const Distance& t) { return text_of(t.distance) + (t.reached ? "" : ", precision not reached"); });
+  add_outcome(answers);
+  answers.repr([](const Distance& t) { return text_of(t.distance) + note_of(t.outcome); });
 }
 
 void add_penetration(py::module_& module) {
@@ -297,12 +310,8 @@ void add_penetration(py::module_& module) {
           "translation", [](const Penetration& t) -> const Vector3& { return t.translation; },
           "Added to B's translation it separates them: proved, (n, 3). Zero if they are separated as they "
           "are.")
-      .view(
-          "reached", [](const Penetration& t) -> const bool& { return t.reached; },
-          "Is the interval as narrow as requested? (n,) bool.")
-      .repr([](const Penetration& t) {
-        return "depth " + text_of(t.depth) + (t.reached ? "" : ", precision not reached");
-      });
+      .repr([](const Penetration& t) { return "depth " + text_of(t.depth) + note_of(t.outcome); });
+  add_outcome(answers);
 }
 
 constexpr const char* pose_doc =
@@ -326,14 +335,14 @@ void add_pair_queries(py::module_& module) {
   module.def(
       "collide", collide_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
       arg("pose_b") = none, arg("tolerance") = "0.1%", arg("margin") = 0, arg("solid") = false,
-      arg("witness") = "exact", arg("measure") = true, arg("budget") = none, arg("threads") = 0,
+      arg("witness") = "exact", arg("measure") = true, arg("max_splits") = none, arg("threads") = 0,
       arg("progress") = none, arg("rigid") = none,
       ("Do two limit surfaces touch?\n\n" + poses +
        "tolerance, margin: mesh units, or percent of the larger surface's size as in \"0.1%\"; with "
        "tolerance 0 only proofs\n"
        "of contact or separation count. solid: compare the solids that closed surfaces bound.\n"
        "witness: 'none', 'approximate' or 'exact'. measure: narrow the interval of separated surfaces.\n"
-       "budget: most splits. threads: for many poses; 0 takes all cores.\n\n"
+       "max_splits: most splits. threads: for many poses; 0 takes all cores.\n\n"
        "Guarantee: 'separated' means distance > margin, 'within' distance <= margin + tolerance, "
        "'intersecting' a common\n"
        "point, for the doubles given. The answer depends on the input alone.\n"
@@ -341,22 +350,22 @@ void add_pair_queries(py::module_& module) {
           .c_str());
   module.def("distance", distance_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
              arg("pose_b") = none, arg("relative") = none, arg("absolute") = none, arg("solid") = false,
-             arg("budget") = none, arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+             arg("max_splits") = none, arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
              ("How far apart are two limit surfaces?\n\n" + poses +
               "The work ends once upper - lower <= max(absolute, relative * upper); absolute is in mesh "
               "units, or percent of the\n"
               "larger surface's size. By default absolute is 0.01 % of it.\n\n"
-              "Guarantee: [lower, upper] contains the distance, whether that was reached or not.\n"
+              "Guarantee: [lower, upper] contains the distance, whatever the outcome.\n"
               "Raises as collide().")
                  .c_str());
   module.def("_pose", matrix_of_pose, arg("pose"), arg("name"),
              arg("rigid") = none);  // for the package alone
   module.def("penetration", penetration_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
-             arg("pose_b") = none, arg("relative") = none, arg("budget") = none, arg("progress") = none,
+             arg("pose_b") = none, arg("relative") = none, arg("max_splits") = none, arg("progress") = none,
              arg("rigid") = none,
              ("How deeply do two solids penetrate?\n\n" + poses +
               "relative: ends once the interval's width is at most this fraction of its upper end (0.05).\n"
-              "budget: most splits of each collision query of the search.\n\n"
+              "max_splits: most splits of each collision query of the search.\n\n"
               "Raises as collide(); MeshError for surfaces that are not closed.")
                  .c_str());
 }

@@ -1,9 +1,9 @@
-// One surface and points, rays, parameters: closest_point, signed_distance, contains, cast_rays, evaluate.
+// One surface and points, rays, parameters: closest_point, signed_distance, contains, ray, evaluate.
 
 #include <algorithm>
 #include <cmath>
 
-#include <snug/closest.h>
+#include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/ray.h>
 
@@ -20,62 +20,58 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // One answer, or one for each point.
 template <class T, class One, class Many>
 Answers<T> for_points(const PySurface& self, const py::object& given, const py::object& progress,
-                      const One& one, const Many& many) {
+                      const Run& run, const One& one, const Many& many) {
   const Surface surface = self.surface();
   const Points points(given, "points");
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
-    if (points.single()) return Answers<T>(one(surface, points.all()[0], monitor));
-    return Answers<T>(many(surface, points.all(), monitor));
+  Call call(progress, run);
+  return call.run([&](const Run& each) {
+    if (points.single()) return Answers<T>(one(surface, points.all()[0], each));
+    return Answers<T>(many(surface, points.all(), each));
   });
 }
 
 // work(begin, count) on [0, n), block by block, for what the library does not stop in between.
 template <class Work>
-void in_blocks(std::size_t n, const WorkMonitor& monitor, const Work& work) {
+void in_blocks(std::size_t n, const Run& run, const Work& work) {
   constexpr std::size_t most = std::size_t{1} << 18;  // a quarter of a second at most
   for (std::size_t begin = 0; begin < n; begin += most) {
-    monitor.report(static_cast<double>(begin) / static_cast<double>(n));
+    run.monitor->report(static_cast<double>(begin) / static_cast<double>(n));
     work(begin, std::min(most, n - begin));
   }
 }
 
-ClosestOptions closest_options(const PySurface& self, const py::object& relative, const py::object& absolute,
-                               const py::object& budget) {
-  ClosestOptions options;
+Precision precision_of(const PySurface& self, const py::object& relative, const py::object& absolute) {
+  Precision options;
   options.relative = number_of(relative, "relative");
   options.absolute = length_of(absolute, self.surface().size(), "absolute");
-  options.budget = count_of(budget, options.budget, "budget");
   return options;
 }
 
 Answers<ClosestPoint> closest(const PySurface& self, const py::object& points, const py::object& relative,
-                              const py::object& absolute, const py::object& budget, const py::object& threads,
-                              const py::object& progress) {
-  const ClosestOptions options = closest_options(self, relative, absolute, budget);
-  const int all_threads = threads_of(threads);
+                              const py::object& absolute, const py::object& max_splits,
+                              const py::object& threads, const py::object& progress) {
+  const Precision options = precision_of(self, relative, absolute);
   return for_points<ClosestPoint>(
-      self, points, progress,
-      [&](const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
-        return closest_point(surface, p, options, monitor);
+      self, points, progress, run_of(threads, max_splits),
+      [&](const Surface& surface, const Point3& p, const Run& run) {
+        return closest_point(surface, p, options, run);
       },
-      [&](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
-        return closest_points(surface, all, options, all_threads, monitor);
+      [&](const Surface& surface, std::span<const Point3> all, const Run& run) {
+        return closest_point(surface, all, options, run);
       });
 }
 
 Answers<SignedDistance> signed_of(const PySurface& self, const py::object& points, const py::object& relative,
-                                  const py::object& absolute, const py::object& budget,
+                                  const py::object& absolute, const py::object& max_splits,
                                   const py::object& threads, const py::object& progress) {
-  const ClosestOptions options = closest_options(self, relative, absolute, budget);
-  const int all_threads = threads_of(threads);
+  const Precision options = precision_of(self, relative, absolute);
   return for_points<SignedDistance>(
-      self, points, progress,
-      [&](const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
-        return signed_distance(surface, p, options, monitor);
+      self, points, progress, run_of(threads, max_splits),
+      [&](const Surface& surface, const Point3& p, const Run& run) {
+        return signed_distance(surface, p, options, run);
       },
-      [&](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
-        return signed_distances(surface, all, options, all_threads, monitor);
+      [&](const Surface& surface, std::span<const Point3> all, const Run& run) {
+        return signed_distance(surface, all, options, run);
       });
 }
 
@@ -88,14 +84,13 @@ Side side_of(const std::optional<bool>& inside) { return {static_cast<std::int8_
 
 Answers<Side> contained(const PySurface& self, const py::object& points, const py::object& threads,
                         const py::object& progress) {
-  const int all_threads = threads_of(threads);
   return for_points<Side>(
-      self, points, progress,
-      [](const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
-        return side_of(contains(surface, p, monitor));
+      self, points, progress, run_of(threads),
+      [](const Surface& surface, const Point3& p, const Run& run) {
+        return side_of(contains(surface, p, run));
       },
-      [&](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
-        const std::vector<std::optional<bool>> inside = contains(surface, all, all_threads, monitor);
+      [&](const Surface& surface, std::span<const Point3> all, const Run& run) {
+        const std::vector<std::optional<bool>> inside = contains(surface, all, run);
         std::vector<Side> sides(inside.size());
         std::ranges::transform(inside, sides.begin(), side_of);
         return sides;
@@ -116,14 +111,12 @@ void add_closest(py::module_& module) {
           "point", [](const ClosestPoint& t) -> const Point3& { return t.point; },
           "A limit point close to the closest one, (n, 3).")
       .view(
-          "point_error", [](const ClosestPoint& t) -> const double& { return t.point_error; },
-          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).")
-      .view(
-          "reached", [](const ClosestPoint& t) -> const bool& { return t.reached; },
-          "Is the interval as narrow as requested? (n,) bool.");
-  add_place(answers, [](const ClosestPoint& t) -> const SurfaceParameter& { return t.at; });
+          "error", [](const ClosestPoint& t) -> const double& { return t.error; },
+          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).");
+  add_outcome(answers);
+  add_place(answers, [](const ClosestPoint& t) -> const Place& { return *t.at; });
   answers.repr([](const ClosestPoint& t) {
-    return "distance " + text_of(t.distance) + ", face " + std::to_string(t.at.owner);
+    return "distance " + text_of(t.distance) + ", face " + std::to_string(t.at->owner);
   });
 
   AnswerClass<SignedDistance> signed_answers(
@@ -140,12 +133,10 @@ void add_closest(py::module_& module) {
           "point", [](const SignedDistance& t) -> const Point3& { return t.nearest.point; },
           "A limit point close to the closest one, (n, 3).")
       .view(
-          "point_error", [](const SignedDistance& t) -> const double& { return t.nearest.point_error; },
-          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).")
-      .view(
-          "reached", [](const SignedDistance& t) -> const bool& { return t.reached; },
-          "Is the interval as narrow as requested, and the sign proved? (n,) bool.");
-  add_place(signed_answers, [](const SignedDistance& t) -> const SurfaceParameter& { return t.nearest.at; });
+          "error", [](const SignedDistance& t) -> const double& { return t.nearest.error; },
+          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).");
+  add_outcome(signed_answers);
+  add_place(signed_answers, [](const SignedDistance& t) -> const Place& { return *t.nearest.at; });
   signed_answers.repr([](const SignedDistance& t) { return text_of(t.distance); });
 }
 
@@ -183,11 +174,11 @@ struct Hits {
   std::vector<RayHit> hits;
   std::vector<Vector3> normals;  // NaN where there is none
   std::vector<std::int64_t> ray;
-  std::vector<std::uint8_t> complete, certain_hit, certain_miss;
+  std::vector<std::uint8_t> outcome, certain_hit, certain_miss;
 };
 
 auto members_of(Either<Hits> auto& t) {
-  return std::tie(t.single, t.hits, t.normals, t.ray, t.complete, t.certain_hit, t.certain_miss);
+  return std::tie(t.single, t.hits, t.normals, t.ray, t.outcome, t.certain_hit, t.certain_miss);
 }
 
 struct RayInput {
@@ -217,17 +208,16 @@ struct RayInput {
   Points from, along;
 };
 
-Hits traced(const PySurface& self, const RayInput& input, const RayOptions& options, int threads,
+Hits traced(const PySurface& self, const RayInput& input, const RayOptions& options, const Run& how,
             const py::object& progress) {
   const Surface surface = self.surface();
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
-    const std::vector<RayHits> all =
-        trace(surface, input.rays(0, input.count(), monitor), options, threads, monitor);
+  Call call(progress, how);
+  return call.run([&](const Run& run) {
+    const std::vector<RayHits> all = ray(surface, input.rays(0, input.count(), *run.monitor), options, run);
     Hits result;
     result.single = input.single();
     for (std::size_t i = 0; i < all.size(); ++i) {
-      result.complete.push_back(all[i].complete);
+      result.outcome.push_back(static_cast<std::uint8_t>(all[i].outcome));
       result.certain_hit.push_back(all[i].certain_hit());
       result.certain_miss.push_back(all[i].certain_miss());
       for (const RayHit& hit : all[i].hits) {
@@ -240,9 +230,9 @@ Hits traced(const PySurface& self, const RayInput& input, const RayOptions& opti
   });
 }
 
-py::object cast_rays(PySurface& self, const py::object& origins, const py::object& directions,
-                     const py::object& query, bool certified, const py::object& precision,
-                     const py::object& tolerance, const py::object& budget, const py::object& threads,
+py::object find_hits(PySurface& self, const py::object& origins, const py::object& directions,
+                     const py::object& query, bool certified, const py::object& absolute,
+                     const py::object& error, const py::object& max_splits, const py::object& threads,
                      const py::object& progress) {
   const RayInput input(origins, directions);
   RayOptions options;
@@ -255,20 +245,19 @@ py::object cast_rays(PySurface& self, const py::object& origins, const py::objec
   }
   const int all_threads = threads_of(threads);
   if (certified) {
-    options.precision = length_of(precision, self.surface().size(), "precision");
-    options.budget = count_of(budget, options.budget, "budget");
-    return py::cast(traced(self, input, options, all_threads, progress));
+    options.absolute = length_of(absolute, self.surface().size(), "absolute");
+    return py::cast(traced(self, input, options, run_of(threads, max_splits), progress));
   }
   if (word != "nearest")
     throw InputError(InputProblem::value,
                      "query: without proof (certified=False) only 'nearest' can be asked");
-  const auto caster =
-      self.caster(length_of(tolerance, self.surface().size(), "tolerance").value_or(0), all_threads);
+  const auto caster = self.caster(length_of(error, self.surface().size(), "error").value_or(0), all_threads);
   Call call(progress);
-  std::vector<QuickHit> hits = call.run([&](const WorkMonitor& monitor) {
+  std::vector<QuickHit> hits = call.run([&](const Run& run) {
     std::vector<QuickHit> all(input.count());
-    in_blocks(all.size(), monitor, [&](std::size_t begin, std::size_t count) {
-      caster->cast(input.rays(begin, count, monitor), std::span(all).subspan(begin, count), all_threads);
+    in_blocks(all.size(), run, [&](std::size_t begin, std::size_t count) {
+      caster->cast(input.rays(begin, count, *run.monitor), std::span(all).subspan(begin, count),
+                   {.threads = all_threads});
     });
     return all;
   });
@@ -315,37 +304,46 @@ void add_rays(py::module_& module) {
       "certified", [](const RayHit& t) -> const bool& { return t.certified; },
       "Is a hit in the interval proved? (m,) bool.");
   hit_view(
-      "reached", [](const RayHit& t) -> const bool& { return t.reached; },
-      "Is the interval at most the precision long? (m,) bool.");
-  hit_view(
       "side", [](const RayHit& t) -> const int& { return t.side; },
       "+1 where the ray passes along the normal, -1 against it, 0 where that is not known, (m,).");
   hit_view(
       "point", [](const RayHit& t) -> const Point3& { return t.point; },
       "In the middle of the intervals, (m, 3).");
   hit_view(
-      "point_error", [](const RayHit& t) -> const double& { return t.point_error; },
+      "error", [](const RayHit& t) -> const double& { return t.error; },
       "Upper bound, per coordinate, of the distance of the ray's points in the interval from `point`, (m,).");
   hit_view(
-      "face", [](const RayHit& t) -> const std::uint32_t& { return t.at.owner; },
+      "face", [](const RayHit& t) -> const std::uint32_t& { return t.at->owner; },
       "Faces there (of dual schemes vertices), (m,) uint32.");
   hit_view(
-      "corner", [](const RayHit& t) -> const std::uint32_t& { return t.at.corner; },
+      "corner", [](const RayHit& t) -> const std::uint32_t& { return t.at->corner; },
       "Corners of these faces, (m,) uint32.");
   hit_view(
-      "u", [](const RayHit& t) -> const double& { return t.at.u; }, "First parameter, (m,).");
+      "u", [](const RayHit& t) -> const double& { return t.at->u; }, "First parameter, (m,).");
   hit_view(
-      "v", [](const RayHit& t) -> const double& { return t.at.v; }, "Second parameter, (m,).");
+      "v", [](const RayHit& t) -> const double& { return t.at->v; }, "Second parameter, (m,).");
   number_view("normal", &Hits::normals, "Unit normals there, (m, 3); NaN where there is none.");
   number_view("ray", &Hits::ray, "The ray of each hit, (m,) int64.");
-  mask("complete", &Hits::complete,
-       "Of each ray: are all hits that the query is about among them? (n,) bool.");
+  cls.def_property_readonly(
+      "outcome",
+      [](const Hits& self) -> py::object {
+        const auto word = [](std::uint8_t outcome) {
+          return py::str(name_of(static_cast<Outcome>(outcome)));
+        };
+        if (self.single) return word(self.outcome.at(0));
+        py::list words;
+        for (const std::uint8_t outcome : self.outcome) words.append(word(outcome));
+        return words;
+      },
+      "Of each ray: 'complete'; 'budget-spent': there may be other hits; 'at-rounding': an interval stays "
+      "wider "
+      "than requested. For many rays a list.");
   mask("certain_hit", &Hits::certain_hit, "Of each ray: is it proved that there is a hit? (n,) bool.");
   mask("certain_miss", &Hits::certain_miss, "Of each ray: is it proved that there is none? (n,) bool.");
   cls.def("__len__", [](const Hits& self) { return self.hits.size(); });
   cls.def("__repr__", [](const Hits& self) {
     return "<snug.RayHits " + std::to_string(self.hits.size()) + " of " +
-           std::to_string(self.complete.size()) + (self.complete.size() == 1 ? " ray>" : " rays>");
+           std::to_string(self.outcome.size()) + (self.outcome.size() == 1 ? " ray>" : " rays>");
   });
 
   AnswerClass<QuickHit> quick(module, "QuickHit",
@@ -363,12 +361,12 @@ void add_rays(py::module_& module) {
       .repr([](const QuickHit& t) {
         return std::isfinite(t.t) ? "t " + text_of(t.t) : std::string("nothing");
       });
-  add_place(quick, [](const QuickHit& t) -> const SurfaceParameter& { return t.at; });
+  add_place(quick, [](const QuickHit& t) -> const Place& { return t.at; });
 }
 
 // The parameter that plain numbers of Python give, without numpy's help.
-std::optional<SurfaceParameter> plain_parameter(const py::object& face, const py::object& u,
-                                                const py::object& v, const py::object& corner) {
+std::optional<Place> plain_parameter(const py::object& face, const py::object& u, const py::object& v,
+                                     const py::object& corner) {
   const auto index = [](const py::object& given) -> std::optional<std::uint32_t> {
     if (Py_TYPE(given.ptr()) != &PyLong_Type) return {};
     int overflow = 0;
@@ -379,7 +377,7 @@ std::optional<SurfaceParameter> plain_parameter(const py::object& face, const py
   const std::optional<std::uint32_t> owner = index(face), at_corner = index(corner);
   const std::optional<double> s = plain_number(u.ptr()), t = plain_number(v.ptr());
   if (!owner || !at_corner || !s || !t) return {};
-  return SurfaceParameter{*owner, *at_corner, *s, *t};
+  return Place{*owner, *at_corner, *s, *t};
 }
 
 Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, const py::object& u,
@@ -389,26 +387,26 @@ Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, c
   if (const auto at = plain_parameter(face, u, v, corner)) {
     static_cast<void>(threads_of(threads));
     Call call(progress);
-    return call.run([&](const WorkMonitor&) { return Answers<SurfacePoint>(evaluate(surface, *at)); });
+    return call.run([&](const Run&) { return Answers<SurfacePoint>(evaluate(surface, *at)); });
   }
   const py::tuple arrays = convert("parameters")(face, u, v, corner);
   const auto owners = arrays[0].cast<py::array_t<std::uint32_t>>(),
              corners = arrays[3].cast<py::array_t<std::uint32_t>>();
   const Doubles us(arrays[1], "u"), vs(arrays[2], "v");
-  std::vector<SurfaceParameter> at(static_cast<std::size_t>(owners.size()));
+  std::vector<Place> at(static_cast<std::size_t>(owners.size()));
   for (std::size_t i = 0; i < at.size(); ++i) {
     at[i] = {owners.data()[i], corners.data()[i], us.data()[i], vs.data()[i]};
   }
   const bool single = arrays[4].cast<bool>();
   const int all_threads = threads_of(threads);
   Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
+  return call.run([&](const Run& run) {
     if (single) return Answers<SurfacePoint>(evaluate(surface, at[0]));
     std::vector<SurfacePoint> all;
     all.reserve(at.size());
-    in_blocks(at.size(), monitor, [&](std::size_t begin, std::size_t count) {
+    in_blocks(at.size(), run, [&](std::size_t begin, std::size_t count) {
       const std::vector<SurfacePoint> block =
-          evaluate(surface, std::span(at).subspan(begin, count), all_threads);
+          evaluate(surface, std::span(at).subspan(begin, count), {.threads = all_threads});
       all.insert(all.end(), block.begin(), block.end());
     });
     return Answers<SurfacePoint>(std::move(all));
@@ -420,7 +418,7 @@ void add_evaluated(py::module_& module) {
                                     "A limit point, or n of them, with tangents and normals.");
   answers
       .view(
-          "position", [](const SurfacePoint& t) -> const Point3& { return t.position; },
+          "point", [](const SurfacePoint& t) -> const Point3& { return t.point; },
           "The point, (n, 3), mesh units.")
       .view(
           "error", [](const SurfacePoint& t) -> const double& { return t.error; },
@@ -442,7 +440,7 @@ void add_evaluated(py::module_& module) {
           [](const SurfacePoint& t, double* out) { *out = t.normal_error.value_or(HUGE_VAL); },
           "Upper bound of |normal - exact normal|, (n,); infinite where none is proved.")
       .repr([](const SurfacePoint& t) {
-        return text_of(t.position.x) + " " + text_of(t.position.y) + " " + text_of(t.position.z);
+        return text_of(t.point.x) + " " + text_of(t.point.y) + " " + text_of(t.point.z);
       });
 }
 
@@ -458,19 +456,20 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
   constexpr const char* narrow =
       "The work ends once upper - lower <= max(absolute, relative * upper); absolute is in mesh units, or "
       "percent of the size as\n"
-      "in \"0.1%\"; by default 0.01 %. budget: most splits for each point. threads: for many points; 0 takes "
+      "in \"0.1%\"; by default 0.01 %. max_splits: most splits for each point. threads: for many points; 0 "
+      "takes "
       "all cores.\n";
   surface
       .def(
           "closest_point", &closest, arg("points"), py::kw_only(), arg("relative") = none,
-          arg("absolute") = none, arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+          arg("absolute") = none, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
           (std::string(
                "The point of the surface closest to a point (3,), or to each of (n, 3), in mesh units.\n\n") +
            narrow +
            "\nGuarantee: [lower, upper] contains the distance. Raises ValueError, MeshError, OverflowError.")
               .c_str())
       .def("signed_distance", &signed_of, arg("points"), py::kw_only(), arg("relative") = none,
-           arg("absolute") = none, arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+           arg("absolute") = none, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
            (std::string("The distance of a point (3,), or of each of (n, 3), negative inside of the closed "
                         "surface.\n\n") +
             narrow + "\nRaises as closest_point(); MeshError for a surface that is not closed.")
@@ -479,14 +478,15 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
            "Is a point (3,), or each of (n, 3), inside of the closed surface? Proved, or undecided.\n\n"
            "threads: for many points; 0 takes all cores.\n"
            "Raises ValueError; MeshError for a surface that is not closed.")
-      .def("cast_rays", &cast_rays, arg("origins"), arg("directions"), py::kw_only(),
-           arg("query") = "nearest", arg("certified") = true, arg("precision") = none,
-           arg("tolerance") = "0.01%", arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+      .def("ray", &find_hits, arg("origins"), arg("directions"), py::kw_only(), arg("query") = "nearest",
+           arg("certified") = true, arg("absolute") = none, arg("error") = "0.01%", arg("max_splits") = none,
+           arg("threads") = 0, arg("progress") = none,
            "Where rays meet the surface: origins and directions (3,) or (n, 3), one of either beside n of "
            "the other.\n\n"
-           "query: 'nearest', 'any', 'all'. precision: length of a hit's interval. budget: most splits for "
+           "query: 'nearest', 'any', 'all'. absolute: length of a hit's interval, mesh units or percent. "
+           "max_splits: most splits for "
            "each ray.\n"
-           "certified=False: a QuickHit for pictures, within the tolerance; nothing is proved.\n\n"
+           "certified=False: a QuickHit for pictures, within `error`; nothing is proved.\n\n"
            "Raises ValueError, MeshError, OverflowError.")
       .def("evaluate", &evaluated, arg("face"), arg("u"), arg("v"), arg("corner") = 0, py::kw_only(),
            arg("threads") = 0, arg("progress") = none,

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/motion.h>
+#include <snug/geometry.h>
 
 #include "arrays.h"
 

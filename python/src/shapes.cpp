@@ -24,12 +24,10 @@ auto members_of(Either<PatchEnclosure> auto& t) {
 }
 auto members_of(Either<Tessellation> auto& t) {
   return std::tie(t.positions, t.normals, t.parameters, t.position_error, t.triangles, t.owners, t.corners,
-                  t.error_bound, t.reached);
+                  t.error_bound, t.outcome);
 }
 auto members_of(Either<Hull> auto& t) { return std::tie(t.positions, t.triangles, t.owners, t.gap); }
-auto members_of(Either<Hulls> auto& t) {
-  return std::tie(t.inner, t.outer, t.verified, t.problems, t.closed);
-}
+auto members_of(Either<Hulls> auto& t) { return std::tie(t.inner, t.outer, t.outcome, t.problems, t.closed); }
 
 }  // namespace snug
 
@@ -46,19 +44,17 @@ struct Enclosures {
 };
 auto members_of(Either<Enclosures> auto& t) { return std::tie(t.pieces, t.summary); }
 
-Enclosures bounded(const PySurface& self, const py::object& tolerance, unsigned level,
-                   const py::object& budget, const py::object& threads, const py::object& progress) {
+Enclosures bounded(const PySurface& self, const py::object& error, unsigned level,
+                   const py::object& max_splits, const py::object& threads, const py::object& progress) {
   const Surface surface = self.surface();
   BoundOptions options;
-  options.tolerance = length_of(tolerance, surface.size(), "tolerance");
+  options.error = length_of(error, surface.size(), "error");
   options.level = level;
-  options.budget = count_of(budget, options.budget, "budget");
-  options.threads = threads_of(threads);
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) {
     Enclosures result;
     result.summary = bound(
-        surface, options, [&](const PatchEnclosure& piece) { result.pieces.push_back(piece); }, monitor);
+        surface, options, [&](const PatchEnclosure& piece) { result.pieces.push_back(piece); }, run);
     return result;
   });
 }
@@ -140,8 +136,8 @@ void add_enclosures(py::module_& module) {
          },
          "Which piece of its patch: a list of words with a digit for each split.")
       .def_property_readonly(
-          "reached", [](const Enclosures& self) { return self.summary.reached; },
-          "False if the budget, 60 levels or rounding ended splitting before the tolerance.")
+          "outcome", [](const Enclosures& self) { return name_of(self.summary.outcome); },
+          "'complete', 'budget-spent', or 'at-rounding' where 60 levels or rounding ended splitting.")
       .def_property_readonly(
           "max_radius", [](const Enclosures& self) { return self.summary.max_radius; }, "The largest radius.")
       .def_property_readonly(
@@ -171,13 +167,14 @@ void add_triangles(Class& cls) {
           "Of each triangle the face of the surface (of dual schemes the vertex), (m,) uint32.");
 }
 
-Tessellation tessellated(const PySurface& self, const py::object& tolerance, const py::object& max_edge,
+Tessellation tessellated(const PySurface& self, const py::object& error, const py::object& max_edge,
                          const py::object& max_angle, const py::object& view, const py::object& max_thickness,
                          const py::object& max_triangles, bool single_precision, bool normals, bool corners,
-                         const py::object& budget, const py::object& threads, const py::object& progress) {
+                         const py::object& max_splits, const py::object& threads,
+                         const py::object& progress) {
   const Surface surface = self.surface();
   TessellateOptions options;
-  options.tolerance = length_of(tolerance, surface.size(), "tolerance");
+  options.error = length_of(error, surface.size(), "error");
   options.max_edge = length_of(max_edge, surface.size(), "max_edge");
   options.max_angle = number_of(max_angle, "max_angle");
   if (!view.is_none()) {
@@ -195,10 +192,8 @@ Tessellation tessellated(const PySurface& self, const py::object& tolerance, con
   options.single_precision = single_precision;
   options.normals = normals;
   options.corners = corners;
-  options.budget = count_of(budget, options.budget, "budget");
-  options.threads = threads_of(threads);
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) { return tessellate(surface, options, monitor); });
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) { return tessellate(surface, options, run); });
 }
 
 void add_tessellation(py::module_& module) {
@@ -213,40 +208,37 @@ void add_tessellation(py::module_& module) {
     cls.def_property_readonly(
         name,
         [member](const py::object& self) {
-          return column(std::span<const SurfaceParameter>(self.cast<const Tessellation&>().parameters),
-                        member, self);
+          return column(std::span<const Place>(self.cast<const Tessellation&>().parameters), member, self);
         },
         doc);
   };
   parameter(
-      "face", [](const SurfaceParameter& t) -> const std::uint32_t& { return t.owner; },
+      "face", [](const Place& t) -> const std::uint32_t& { return t.owner; },
       "Of each vertex: a face that it lies on, (n,) uint32.");
   parameter(
-      "corner", [](const SurfaceParameter& t) -> const std::uint32_t& { return t.corner; },
+      "corner", [](const Place& t) -> const std::uint32_t& { return t.corner; },
       "Corner of that face, (n,) uint32.");
   parameter(
-      "u", [](const SurfaceParameter& t) -> const double& { return t.u; }, "First parameter there, (n,).");
+      "u", [](const Place& t) -> const double& { return t.u; }, "First parameter there, (n,).");
   parameter(
-      "v", [](const SurfaceParameter& t) -> const double& { return t.v; }, "Second parameter there, (n,).");
+      "v", [](const Place& t) -> const double& { return t.v; }, "Second parameter there, (n,).");
   cls.def_property_readonly(
          "corner_parameters",
          [](const py::object& object) {
            const auto& corners = object.cast<const Tessellation&>().corners;
            static constexpr double none = 0;
            const double* const data = corners.empty() ? &none : &corners[0][0].u;
-           static_assert(offsetof(SurfaceParameter, v) == offsetof(SurfaceParameter, u) + sizeof(double));
+           static_assert(offsetof(Place, v) == offsetof(Place, u) + sizeof(double));
            return read_only<double>({static_cast<py::ssize_t>(corners.size()), 3, 2},
-                                    {3 * sizeof(SurfaceParameter), sizeof(SurfaceParameter), sizeof(double)},
-                                    data, object);
+                                    {3 * sizeof(Place), sizeof(Place), sizeof(double)}, data, object);
          },
          "u, v of each triangle's corners on its own face, (m, 3, 2); empty without corners=True.")
       .def_property_readonly(
           "corner_corners",
           [](const py::object& object) {
             return column(
-                std::span<const std::array<SurfaceParameter, 3>>(object.cast<const Tessellation&>().corners),
-                [](const std::array<SurfaceParameter, 3>& t) -> const std::uint32_t& { return t[0].corner; },
-                object);
+                std::span<const std::array<Place, 3>>(object.cast<const Tessellation&>().corners),
+                [](const std::array<Place, 3>& t) -> const std::uint32_t& { return t[0].corner; }, object);
           },
           "The `corner` that these belong to, (m,) uint32; empty without corners=True.")
       .def_property_readonly(
@@ -256,8 +248,8 @@ void add_tessellation(py::module_& module) {
           "position_error", [](const Tessellation& self) { return self.position_error; },
           "Upper bound, per coordinate, of |vertex - limit point|.")
       .def_property_readonly(
-          "reached", [](const Tessellation& self) { return self.reached; },
-          "False if the budget, or max_triangles, ended refinement before.")
+          "outcome", [](const Tessellation& self) { return name_of(self.outcome); },
+          "'complete', or 'budget-spent' where max_splits or max_triangles ended refinement.")
       .def("__repr__", [](const Tessellation& self) {
         return "<snug.Tessellation of " + std::to_string(self.triangles.size()) +
                " triangles, error at most " + text_of(self.error_bound) + ">";
@@ -266,19 +258,17 @@ void add_tessellation(py::module_& module) {
 
 // Hulls.
 
-Hulls hulls_of(const PySurface& self, const py::object& tolerance, bool inner, bool outer,
-               const py::object& budget, bool single_precision, const py::object& threads,
+Hulls hulls_of(const PySurface& self, const py::object& error, bool inner, bool outer,
+               const py::object& max_splits, bool single_precision, const py::object& threads,
                const py::object& progress) {
   const Surface surface = self.surface();
   HullOptions options;
-  options.tolerance = length_of(tolerance, surface.size(), "tolerance").value_or(0);
+  options.error = length_of(error, surface.size(), "error");
   options.inner = inner;
   options.outer = outer;
-  options.budget = count_of(budget, options.budget, "budget");
   options.single_precision = single_precision;
-  options.threads = threads_of(threads);
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) { return hulls(surface, options, monitor); });
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) { return hull(surface, options, run); });
 }
 
 // None, or the hull within its hulls, whose memory it keeps.
@@ -310,7 +300,8 @@ void add_hulls(py::module_& module) {
              return py::iter(py::make_tuple(hull_in(self, &Hulls::inner), hull_in(self, &Hulls::outer)));
            })
       .def_property_readonly(
-          "verified", [](const Hulls& self) { return self.verified; }, "Do all guarantees hold?")
+          "outcome", [](const Hulls& self) { return name_of(self.outcome); },
+          "'complete': all guarantees hold; else 'budget-spent' or 'at-rounding'.")
       .def_property_readonly(
           "closed", [](const Hulls& self) { return self.closed; }, "Does the surface bound a solid?")
       .def_property_readonly(
@@ -327,23 +318,20 @@ void add_hulls(py::module_& module) {
             }
             return list;
           },
-          "If not, some of the places: dicts with fault, inner, place and face.")
-      .def("__repr__", [](const Hulls& self) {
-        return std::string("<snug.Hulls ") + (self.verified ? "verified>" : "not verified>");
-      });
+          "Unless complete, some of the places: dicts with fault, inner, place and face.")
+      .def("__repr__",
+           [](const Hulls& self) { return std::string("<snug.Hulls ") + name_of(self.outcome) + ">"; });
 }
 
 // Measures.
 
-Measures measured(const PySurface& self, const py::object& relative, const py::object& budget,
+Measures measured(const PySurface& self, const py::object& relative, const py::object& max_splits,
                   const py::object& threads, const py::object& progress) {
   const Surface surface = self.surface();
   MeasureOptions options;
   options.relative = number_of(relative, "relative");
-  options.budget = count_of(budget, options.budget, "budget");
-  options.threads = threads_of(threads);
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) { return measure(surface, options, monitor); });
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) { return measure(surface, options, run); });
 }
 
 template <std::size_t N>
@@ -374,7 +362,8 @@ void add_measures(py::module_& module) {
           [](const py::object& self) { return intervals(self.cast<const Measures&>().inertia, self); },
           "xx, yy, zz, xy, yz, zx of the tensor about the centroid with density 1, (6, 2); None likewise.")
       .def_property_readonly(
-          "reached", [](const Measures& self) { return self.reached; }, "Are all as narrow as requested?")
+          "outcome", [](const Measures& self) { return name_of(self.outcome); },
+          "'complete': all are as narrow as requested; else 'budget-spent' or 'at-rounding'.")
       .def("__repr__", [](const Measures& self) {
         return "<snug.Measures area " + text_of(self.area) +
                (self.volume ? ", volume " + text_of(*self.volume) : "") + ">";
@@ -384,27 +373,24 @@ void add_measures(py::module_& module) {
 // Deviations.
 
 Deviation deviation_of(const PySurface& self, const py::object& candidate, const py::object& absolute,
-                       const py::object& tolerance, bool solid, const py::object& budget,
+                       const py::object& threshold, bool solid, const py::object& max_splits,
                        const py::object& threads, const py::object& progress) {
   const Surface surface = self.surface();
   DeviationOptions options;
   options.absolute = length_of(absolute, surface.size(), "absolute");
-  options.tolerance = length_of(tolerance, surface.size(), "tolerance");
+  options.threshold = length_of(threshold, surface.size(), "threshold");
   options.solid = solid;
-  options.budget = count_of(budget, options.budget, "budget");
-  options.threads = threads_of(threads);
   if (py::isinstance<PySurface>(candidate)) {
     const Surface other = candidate.cast<const PySurface&>().surface();
-    Call call(progress);
-    return call.run([&](const WorkMonitor& monitor) { return deviation(surface, other, options, monitor); });
+    Call call(progress, run_of(threads, max_splits));
+    return call.run([&](const Run& run) { return deviation(surface, other, options, run); });
   }
   const Doubles corners(convert("triangles")(candidate), "mesh");
   static_assert(sizeof(Triangle) == 9 * sizeof(double));
   const std::span<const Triangle> triangles(reinterpret_cast<const Triangle*>(corners.data()),
                                             corners.extent(0));  // NOLINT
-  Call call(progress);
-  return call.run(
-      [&](const WorkMonitor& monitor) { return deviation(surface, triangles, options, monitor); });
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) { return deviation(surface, triangles, options, run); });
 }
 
 void add_deviation(py::module_& module) {
@@ -417,17 +403,19 @@ void add_deviation(py::module_& module) {
           "upper", [](const OneSidedDistance& t) -> const double& { return t.distance.upper; },
           "Upper end of it.")
       .view(
-          "point", [](const OneSidedDistance& t) -> const Point3& { return t.from; },
+          "point", [](const OneSidedDistance& t) -> const Point3& { return t.from.point; },
           "The farthest point found, (3,).")
       .view(
           "nearest", [](const OneSidedDistance& t) -> const Point3& { return t.to; },
           "A point of the other set near it, (3,).")
       .view(
-          "point_error", [](const OneSidedDistance& t) -> const double& { return t.error; },
+          "error", [](const OneSidedDistance& t) -> const double& { return t.from.error; },
           "Upper bound, per coordinate, of the distance of `point` from a point of its set.")
       .array<std::int64_t>(
           "face", {},
-          [](const OneSidedDistance& t, std::int64_t* out) { *out = t.at ? std::int64_t{t.at->owner} : -1; },
+          [](const OneSidedDistance& t, std::int64_t* out) {
+            *out = t.from.at ? std::int64_t{t.from.at->owner} : -1;
+          },
           "Face of `point` if its set is a surface, else -1.")
       .repr([](const OneSidedDistance& t) { return text_of(t.distance); });
   py::class_<Deviation> cls(module, "Deviation",
@@ -454,8 +442,8 @@ void add_deviation(py::module_& module) {
   side("inside", &Deviation::inside, "With solid=True: how far the candidate lies inside; else None.");
   side("outside", &Deviation::outside, "With solid=True: how far the candidate lies outside; else None.");
   cls.def_property_readonly(
-         "reached", [](const Deviation& self) { return self.reached; },
-         "Is each interval as narrow as requested or, with a tolerance, each question answered?")
+         "outcome", [](const Deviation& self) { return name_of(self.outcome); },
+         "'complete': each interval is as narrow as requested or, with a threshold, each question answered.")
       .def("__repr__", [](const Deviation& self) {
         return "<snug.Deviation from surface " + text_of(self.from_surface.distance) + ", from candidate " +
                text_of(self.from_candidate.distance) + ">";
@@ -466,8 +454,8 @@ PyMesh refined(const PySurface& self, const py::object& level, bool limit, const
   const Surface surface = self.surface();
   const std::uint64_t steps = std::min<std::uint64_t>(count_of(level, 0, "level"), 64);
   Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
-    PyMesh result{subdivided(surface, static_cast<unsigned>(steps), limit, monitor)};
+  return call.run([&](const Run& run) {
+    PyMesh result{subdivided(surface, static_cast<unsigned>(steps), limit, run)};
     // At limit positions it is a control mesh no longer.
     result.mesh.tags.scheme = limit ? std::nullopt : std::optional(surface.scheme());
     return result;
@@ -487,18 +475,18 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
   surface
       .def(
           "bound",
-          [](const PySurface& self, const py::object& tolerance, const py::object& level,
-             const py::object& budget, const py::object& threads, const py::object& progress) {
+          [](const PySurface& self, const py::object& error, const py::object& level,
+             const py::object& max_splits, const py::object& threads, const py::object& progress) {
             const auto splits =
                 static_cast<unsigned>(std::min<std::uint64_t>(count_of(level, 0, "level"), 1000));
-            return bounded(self, tolerance, splits, budget, threads, progress);
+            return bounded(self, error, splits, max_splits, threads, progress);
           },
-          py::kw_only(), arg("tolerance") = none, arg("level") = 0, arg("budget") = none, arg("threads") = 0,
+          py::kw_only(), arg("error") = none, arg("level") = 0, arg("max_splits") = none, arg("threads") = 0,
           arg("progress") = none,
           "Sets that contain the whole surface, piece by piece.\n\n"
-          "tolerance: split until each radius is at most half of it; mesh units or percent of the size. "
+          "error: split until each radius is at most half of it; mesh units or percent of the size. "
           "Without one every\n"
-          "patch is split `level` times. budget: most splits in all.\n\n"
+          "patch is split `level` times. max_splits: most splits in all.\n\n"
           "Guarantee: every limit point of a patch lies in the union of its pieces' sets. Raises ValueError, "
           "OverflowError.")
       .def(
@@ -512,23 +500,24 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
           "A box around the surface of each face (of dual schemes vertex), (n, 2, 3): lower and upper "
           "corners; NaN where it\n"
           "has no surface. level: split so often first, for tighter boxes. Proved.")
-      .def("tessellate", &tessellated, arg("tolerance") = none, py::kw_only(), arg("max_edge") = none,
+      .def("tessellate", &tessellated, arg("error") = none, py::kw_only(), arg("max_edge") = none,
            arg("max_angle") = none, arg("view") = none, arg("max_thickness") = none,
            arg("max_triangles") = none, arg("single_precision") = false, arg("normals") = true,
-           arg("corners") = false, arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+           arg("corners") = false, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
            "Triangles near the surface, without cracks.\n\n"
-           "tolerance: largest distance between the two, either way. max_edge: longest edge. max_angle: "
+           "error: largest distance between the two, either way. max_edge: longest edge. max_angle: "
            "degrees between normals.\n"
            "view: (eye, degrees), from where no error is seen under a larger angle. max_thickness: of "
            "pieces. max_triangles: the\n"
            "smallest error for so many. Lengths are mesh units, or percent of the size.\n\n"
            "Raises ValueError, OverflowError.")
-      .def("hull", &hulls_of, arg("tolerance"), py::kw_only(), arg("inner") = true, arg("outer") = true,
-           arg("budget") = none, arg("single_precision") = false, arg("threads") = 0, arg("progress") = none,
-           "Two meshes that sandwich the surface, at most `tolerance` from it: inner, outer = "
+      .def("hull", &hulls_of, arg("error") = none, py::kw_only(), arg("inner") = true, arg("outer") = true,
+           arg("max_splits") = none, arg("single_precision") = false, arg("threads") = 0,
+           arg("progress") = none,
+           "Two meshes that sandwich the surface, at most `error` from it (1 % of the size): inner, outer = "
            "surface.hull(\"0.5%\").\n"
-           "What is guaranteed holds if .verified. Raises ValueError, MeshError, OverflowError.")
-      .def("measure", &measured, py::kw_only(), arg("relative") = none, arg("budget") = none,
+           "What is guaranteed holds if .outcome is 'complete'. Raises ValueError, MeshError, OverflowError.")
+      .def("measure", &measured, py::kw_only(), arg("relative") = none, arg("max_splits") = none,
            arg("threads") = 0, arg("progress") = none,
            "Area, and of a closed surface volume, centroid and inertia, as intervals.\n"
            "relative: how narrow (0.0001). Raises ValueError, MeshError, OverflowError.")
@@ -538,13 +527,13 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
           "The control mesh after `level` steps of subdivision, a Mesh; with limit=True at limit positions.\n"
           "Raises ValueError, MeshError, OverflowError.");
   module.def("deviation", &deviation_of, arg("surface"), arg("candidate"), py::kw_only(),
-             arg("absolute") = none, arg("tolerance") = none, arg("solid") = false, arg("budget") = none,
+             arg("absolute") = none, arg("threshold") = none, arg("solid") = false, arg("max_splits") = none,
              arg("threads") = 0, arg("progress") = none,
              "How far a surface and a candidate deviate: a Surface, or triangles as for Surface(mesh) or (n, "
              "3, 3) corners.\n\n"
-             "absolute: how narrow the intervals become; by default 0.01 % of the size. tolerance: only "
-             "which distances are\n"
-             "greater is asked. solid: also how far the candidate lies inside and outside.\n\n"
+             "absolute: how narrow the intervals become; by default 0.01 % of the size. threshold: only "
+             "decide which distances exceed\n"
+             "it. solid: also how far the candidate lies inside and outside.\n\n"
              "Raises ValueError, MeshError, OverflowError.");
 }
 

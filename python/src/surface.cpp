@@ -11,17 +11,16 @@
 
 namespace snug::python {
 
-PySurface::PySurface(ControlMesh mesh, const SurfaceOptions& options)
-    : surface_(std::move(mesh), options), options_(options) {
+PySurface::PySurface(ControlMesh mesh, const SurfaceOptions& options, const Run& run)
+    : surface_(std::move(mesh), options, run), options_(options) {
   options_.notes = {};
-  options_.monitor = {};
 }
 
 PySurface::PySurface(const PySurface& other)
     : surface_(other.surface_),
       options_(other.options_),
       caster_(other.caster_),
-      caster_tolerance_(other.caster_tolerance_) {}
+      caster_error_(other.caster_error_) {}
 
 void PySurface::update(std::span<const Point3> points) {
   const std::size_t count = surface().mesh().points.size();
@@ -40,16 +39,15 @@ void PySurface::update(std::span<const Point3> points) {
   caster_.reset();
 }
 
-std::shared_ptr<const RayCaster> PySurface::caster(double tolerance, int threads) {
-  if (!caster_ || caster_tolerance_ != tolerance) {
+std::shared_ptr<const RayCaster> PySurface::caster(double error, int threads) {
+  if (!caster_ || caster_error_ != error) {
     const Surface surface = this->surface();
-    Call call;
-    auto made = call.run([&](const WorkMonitor& monitor) {
-      return std::make_shared<const RayCaster>(surface, tolerance, threads, monitor);
-    });
+    Call call(py::none(), {.threads = threads});
+    auto made =
+        call.run([&](const Run& run) { return std::make_shared<const RayCaster>(surface, error, run); });
     if (surface.data() != surface_.data()) return made;  // an update() came between
     caster_ = std::move(made);
-    caster_tolerance_ = tolerance;
+    caster_error_ = error;
   }
   return caster_;
 }
@@ -94,13 +92,12 @@ bool is_word(const py::object& given, const char* word) {
 
 // Keywords of Surface and read() alike.
 SurfaceOptions options_of(const py::object& scheme, const py::object& boundary, const py::object& bounds,
-                          bool tight, const py::object& threads) {
+                          bool tight) {
   SurfaceOptions options;
   if (!scheme.is_none() && !is_word(scheme, "auto")) options.scheme = named(scheme, schemes, "scheme");
   if (!boundary.is_none()) options.boundary = named(boundary, boundaries, "boundary");
   options.bounds = named(bounds, bound_methods, "bounds");
   options.tight = tight;
-  options.threads = threads_of(threads);
   return options;
 }
 
@@ -216,22 +213,21 @@ std::string in_words_of_python(std::string line) {
 
 // `name`: of the file, if there is one.
 std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::optional<double> distance,
-                                std::optional<double> angle, const py::object& progress,
+                                std::optional<double> angle, const Run& how, const py::object& progress,
                                 std::vector<std::string>& notes, const std::string& name = {}) {
   if (options.boundary) mesh.tags.boundary = options.boundary;  // so that write() keeps it
   const std::size_t before = notes.size();
-  Call call(progress);
-  return call.run([&](const WorkMonitor& monitor) {
+  Call call(progress, how);
+  return call.run([&](const Run& run) {
     notes.resize(before);
     options.notes = [&](const std::string& line) {
       notes.push_back((name.empty() ? "" : name + ": ") + in_words_of_python(line));
     };
-    options.monitor = monitor;
     ControlMesh taken = mesh;  // kept for the case that work begins again
     if (distance) static_cast<void>(weld(taken, *distance));
     if (angle) static_cast<void>(sharpen(taken, *angle));
     if (options.scheme) taken.tags.scheme = options.scheme;
-    return std::make_unique<PySurface>(std::move(taken), options);
+    return std::make_unique<PySurface>(std::move(taken), options, run);
   });
 }
 
@@ -242,7 +238,8 @@ std::unique_ptr<PySurface> surface_of(const py::object& vertices, const py::obje
                                       const py::object& smooth_triangles, const py::object& sharp,
                                       const py::object& weld, const py::object& bounds, bool tight,
                                       const py::object& threads, const py::object& progress) {
-  const SurfaceOptions options = options_of(scheme, boundary, bounds, tight, threads);
+  const SurfaceOptions options = options_of(scheme, boundary, bounds, tight);
+  const Run how = run_of(threads);
   // Who gives rules of subdivision means a control mesh.
   const bool has_rules = !creases.is_none() || !corners.is_none() || !holes.is_none() ||
                          !boundary.is_none() || !crease_method.is_none() || !smooth_triangles.is_none();
@@ -250,7 +247,7 @@ std::unique_ptr<PySurface> surface_of(const py::object& vertices, const py::obje
   add_tags(mesh.tags, creases, corners, holes, crease_method, smooth_triangles);
   std::vector<std::string> notes;
   auto surface =
-      made(std::move(mesh), options, weld_distance(weld), sharp_angle(sharp, options), progress, notes);
+      made(std::move(mesh), options, weld_distance(weld), sharp_angle(sharp, options), how, progress, notes);
   warn(notes);
   return surface;
 }
@@ -284,20 +281,20 @@ auto naming(const std::string& path, const Work& work) {
 std::unique_ptr<PySurface> read(const py::object& file, const py::object& scheme, const py::object& boundary,
                                 const py::object& sharp, const py::object& weld, const py::object& bounds,
                                 bool tight, const py::object& threads, const py::object& progress) {
-  const SurfaceOptions options = options_of(scheme, boundary, bounds, tight, threads);
+  const SurfaceOptions options = options_of(scheme, boundary, bounds, tight);
+  const Run how = run_of(threads);
   const std::optional<double> distance = weld_distance(weld), angle = sharp_angle(sharp, options);
   const std::string path = path_of(file);
   std::vector<std::string> notes;
   auto surface = naming(path, [&] {
     Call call(progress);
-    ControlMesh mesh = call.run([&](const WorkMonitor& monitor) {
+    ControlMesh mesh = call.run([&](const Run& run) {
       notes.clear();
-      ReadOptions how{
-          .weld = {}, .notes = [&](const std::string& line) { notes.push_back(line); }, .monitor = monitor};
-      if (distance) how.weld = [d = *distance](double) { return d; };
-      return read_mesh(path, how);
+      ReadOptions reading{.weld = {}, .notes = [&](const std::string& line) { notes.push_back(line); }};
+      if (distance) reading.weld = [d = *distance](double) { return d; };
+      return read_mesh(path, reading, run);
     });
-    return made(std::move(mesh), options, {}, angle, py::none(), notes, path);
+    return made(std::move(mesh), options, {}, angle, how, py::none(), notes, path);
   });
   warn(notes);
   return surface;
@@ -308,10 +305,9 @@ void write(const ControlMesh& mesh, const py::object& file) {
   std::vector<std::string> notes;
   naming(path, [&] {
     Call call;
-    return call.run([&](const WorkMonitor& monitor) {
+    return call.run([&](const Run& run) {
       notes.clear();
-      write_mesh(mesh, path,
-                 {.notes = [&](const std::string& line) { notes.push_back(line); }, .monitor = monitor});
+      write_mesh(mesh, path, {.notes = [&](const std::string& line) { notes.push_back(line); }}, run);
       return true;
     });
   });
@@ -539,8 +535,7 @@ void add_surface(py::module_& module) {
           },
           [](const py::tuple& state) {
             if (state.size() != 5) throw py::value_error("not a pickled surface of snug");
-            const SurfaceOptions options =
-                options_of(state[1], state[2], state[3], state[4].cast<bool>(), py::int_(0));
+            const SurfaceOptions options = options_of(state[1], state[2], state[3], state[4].cast<bool>());
             return PySurface(mesh_of_state(state[0]), options);
           }));
   module.def("read", &read, arg("path"), py::kw_only(), arg("scheme") = "auto", arg("boundary") = none,

@@ -14,7 +14,7 @@ namespace snug::python {
 /// What Python calls a Surface: a handle to a limit surface, which update() replaces.
 class PySurface {
  public:
-  PySurface(ControlMesh mesh, const SurfaceOptions& options);
+  PySurface(ControlMesh mesh, const SurfaceOptions& options, const Run& run = {});
   /// The same surface; each of the two is updated by itself.
   PySurface(const PySurface& other);
   PySurface& operator=(const PySurface&) = delete;
@@ -28,8 +28,8 @@ class PySurface {
   /// The surface of the same faces, tags and options with these control points. Without the GIL.
   /// Errors:    those of MovingSurface; nothing is changed then.
   void update(std::span<const Point3> points);
-  /// Made on first use, and anew for another tolerance or after an update.
-  [[nodiscard]] std::shared_ptr<const RayCaster> caster(double tolerance, int threads);
+  /// Made on first use, and anew for another error or after an update.
+  [[nodiscard]] std::shared_ptr<const RayCaster> caster(double error, int threads);
 
  private:
   struct Moving {
@@ -42,7 +42,7 @@ class PySurface {
   SurfaceOptions options_;
   std::shared_ptr<Moving> moving_;  // made by the first update()
   std::shared_ptr<const RayCaster> caster_;
-  double caster_tolerance_ = 0;
+  double caster_error_ = 0;
 };
 
 /// A control mesh as a value, such as one that was subdivided.

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <snug/error.h>
+#include <snug/run.h>
 
 namespace snug {
 

@@ -7,6 +7,12 @@
 
 namespace snug {
 
+/// A position that was computed, and how far it is from the exact one.
+struct BoundedPoint {
+  Point3 position;
+  double error = 0;  ///< upper bound, per coordinate, of |position - exact|, rounding included
+};
+
 constexpr Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 constexpr Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 constexpr Vector3 operator-(Vector3 a) { return {-a.x, -a.y, -a.z}; }

@@ -520,7 +520,7 @@ TEST(opensubdiv_adapter, hands_over_bilinear_surfaces) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double mean = 0;
       for (const VertexId v : face) mean += mesh.points[v.index()][axis] / 4;
-      EXPECT_NEAR(middle.position[axis], mean, middle.error + 1e-15);
+      EXPECT_NEAR(middle.point[axis], mean, middle.error + 1e-15);
     }
   }
 }

@@ -37,7 +37,7 @@ void expect_inside(const Patch& patch, const BoundingPoints& points, const Vecto
   const Slab slab = outer_slab(points, direction);
   for (int i = 0; i <= 8; ++i) {
     for (int j = 0; i + j <= 8; ++j) {
-      const LimitPoint at = limit_point(patch, {i / 8.0, j / 8.0});
+      const RelativePoint at = limit_point(patch, {i / 8.0, j / 8.0});
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_GE(at.relative[k], box.lower[k] - at.error);
         EXPECT_LE(at.relative[k], box.upper[k] + at.error);
@@ -88,7 +88,7 @@ TEST(refine_tip, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
       const Box3 box = box_around(points);
       for (int i = 0; i <= 16; ++i) {
         for (int j = 0; i + j <= 16; ++j) {
-          const LimitPoint at = limit_point(patch, {i / 16.0, j / 16.0});
+          const RelativePoint at = limit_point(patch, {i / 16.0, j / 16.0});
           for (std::size_t a = 0; a < 3; ++a) {
             EXPECT_GE(at.relative[a], box.lower[a] - at.error) << n;
             EXPECT_LE(at.relative[a], box.upper[a] + at.error) << n;

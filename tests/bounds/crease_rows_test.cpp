@@ -108,7 +108,7 @@ TEST(crease_rows, hold_the_limit_patch_and_little_more) {
             EXPECT_LT(error, 1e-13);
             Extent limit;
             for (const TriangleParameter& at : parameters(random)) {
-              const LimitPoint point = limit_point(patch, at);
+              const RelativePoint point = limit_point(patch, at);
               limit.add(point.relative);
               for (std::size_t a = 0; a < 3; ++a) {
                 ASSERT_GE(point.relative[a], hull.lower[a] - error - point.error) << sharpness;

@@ -203,7 +203,7 @@ TEST(quadratic_rows, bound_a_piece_at_a_corner_by_its_layout_closely) {
         double sampled = 0;
         for (int j = 0; j <= 16; ++j) {
           for (int i = 0; i + j <= 16; ++i) {
-            const LimitPoint at = limit_point(patch, {i / 16.0, j / 16.0});
+            const RelativePoint at = limit_point(patch, {i / 16.0, j / 16.0});
             const Vector3 on_plane =
                 ((16 - i - j) / 16.0) * linear[0] + (i / 16.0) * linear[1] + (j / 16.0) * linear[2];
             sampled = std::max(sampled, length(at.relative - on_plane));
@@ -255,7 +255,7 @@ TEST(distance_to_triangle, bounds_dense_samples_of_every_kind) {
       for (int i = 0; i <= 8; ++i) {
         for (int j = 0; i + j <= 8; ++j) {
           const double u = i / 8.0, v = j / 8.0;
-          const LimitPoint limit = limit_point(patch, {u, v});
+          const RelativePoint limit = limit_point(patch, {u, v});
           const Point3 flat =
               triangle[0] + (u * (triangle[1] - triangle[0]) + v * (triangle[2] - triangle[0]));
           const double found = distance(patch.origin + limit.relative, flat);

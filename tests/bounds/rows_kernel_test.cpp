@@ -75,7 +75,7 @@ void expect_limits_inside(const Kind& kind, const Batch& b, std::span<const Offs
             if (corner == 1) near = {1 - near.u - near.v, near.u};
             if (corner == 2) near = {near.v, 1 - near.u - near.v};
             if (!(near.u >= 0 && near.v >= 0 && near.u + near.v <= 1)) continue;
-            const LimitPoint limit = limit_point(patch, near);
+            const RelativePoint limit = limit_point(patch, near);
             testing::Extended p;
             for (std::size_t a = 0; a < 3; ++a) {
               p[a] = static_cast<long double>(patch.origin[a]) + limit.relative[a];

@@ -45,7 +45,7 @@ TEST(tip_table, holds_limit_corners_of_points_far_from_the_origin) {
       patch.largest = 1;
       const TipBoxes boxes = TipTable(named.surface.library().table(*patch.kind)).boxes(patch);
       for (std::size_t k = 0; k < 3; ++k) {
-        const LimitPoint corner = corner_point(patch, k);
+        const RelativePoint corner = corner_point(patch, k);
         for (std::size_t a = 0; a < 3; ++a) {
           const double low = std::min({boxes.lower[0][a], boxes.lower[1][a], boxes.lower[2][a]}),
                        high = std::max({boxes.upper[0][a], boxes.upper[1][a], boxes.upper[2][a]});

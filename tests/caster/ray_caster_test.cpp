@@ -1,4 +1,4 @@
-// Unproved rays for pictures, beside trace() and the surface itself.
+// Unproved rays for pictures, beside ray() and the surface itself.
 
 #include <snug/snug.h>
 
@@ -62,7 +62,7 @@ TEST(ray_caster, finds_what_is_proved_to_be_hit) {
     std::vector<QuickHit> quick(rays.size());
     caster.cast(rays, quick);
     const std::vector<RayHits> proved =
-        trace(surface, rays, {.query = RayQuery::all, .precision = tolerance / 100});
+        snug::ray(surface, rays, {.query = RayQuery::all, .absolute = tolerance / 100});
     std::size_t missed = 0, others = 0, hits = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const QuickHit alone = caster.cast(rays[i]);
@@ -72,7 +72,7 @@ TEST(ray_caster, finds_what_is_proved_to_be_hit) {
       if (!std::isfinite(quick[i].t)) continue;
       // Its place on the surface is near its place on the ray.
       const Ray& ray = rays[i];
-      const Point3 p = evaluate(surface, quick[i].at).position;
+      const Point3 p = evaluate(surface, quick[i].at).point;
       const Vector3 off{ray.origin.x + quick[i].t * ray.direction.x - p.x,
                         ray.origin.y + quick[i].t * ray.direction.y - p.y,
                         ray.origin.z + quick[i].t * ray.direction.z - p.z};
@@ -95,7 +95,7 @@ TEST(ray_caster, knows_where_small_pieces_lie) {
   for (const Ray& ray : rays_around(surface, 20000)) {
     const QuickHit hit = caster.cast(ray);
     if (!std::isfinite(hit.t)) continue;
-    const Point3 p = evaluate(surface, hit.at).position;
+    const Point3 p = evaluate(surface, hit.at).point;
     ASSERT_LE(
         std::hypot(ray.origin.x + hit.t * ray.direction.x - p.x, ray.origin.y + hit.t * ray.direction.y - p.y,
                    ray.origin.z + hit.t * ray.direction.z - p.z),
@@ -131,9 +131,9 @@ TEST(ray_caster, hits_do_not_depend_on_threads) {
   const RayCaster caster(surface, 1e-3 * surface.size());
   const std::vector<Ray> rays = rays_around(surface, 20'000);
   std::vector<QuickHit> expected(rays.size()), found(rays.size());
-  caster.cast(rays, expected, 1);
+  caster.cast(rays, expected, {.threads = 1});
   for (const int threads : {2, 3, 7}) {
-    caster.cast(rays, found, threads);
+    caster.cast(rays, found, {.threads = threads});
     for (std::size_t i = 0; i < rays.size(); ++i) {
       ASSERT_EQ(found[i].t, expected[i].t) << "ray " << i << ", " << threads << " threads";
       ASSERT_EQ(found[i].normal, expected[i].normal) << "ray " << i << ", " << threads << " threads";
@@ -164,7 +164,7 @@ TEST(ray_caster, withstands_every_size) {
     for (const double speed : {1e-90, 1.0, 1e90}) {
       const Ray ray{{0.3 * size, 0.4 * size, 5 * size}, {0, 0, -speed}};
       EXPECT_NEAR(caster.cast(ray).t * speed / size, 4, 1e-3) << size << " " << speed;
-      const RayHits found = trace(surface, ray);
+      const RayHits found = snug::ray(surface, ray);
       ASSERT_TRUE(found.certain_hit()) << size << " " << speed;
       EXPECT_NEAR(found.hits[0].t.lower * speed / size, 4, 1e-5);
     }

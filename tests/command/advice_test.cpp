@@ -44,7 +44,7 @@ class advice : public ::testing::Test {
 TEST_F(advice, of_collide_is_a_tolerance_where_parts_touch) {
   const Words words{"collide", left_, right_, "--scheme", "flat"};
   const Outcome touching = run_snug(with(words, {"--tolerance", "0"}));
-  EXPECT_EQ(touching.out.find("budget"), std::string::npos) << touching.out;
+  EXPECT_EQ(touching.out.find("max-splits"), std::string::npos) << touching.out;
   expect_helps(with(words, {"--tolerance", "0"}), "give a --tolerance above 0", {});
   expect_helps(with(words, {"--tolerance", "1e-300"}), "give a larger --tolerance", {});
   EXPECT_EQ(run_snug(with(words, {"--tolerance", "1e-9"})).status, 0);
@@ -52,56 +52,62 @@ TEST_F(advice, of_collide_is_a_tolerance_where_parts_touch) {
 
 TEST_F(advice, of_collide_is_a_budget_where_that_ended) {
   const Words words{
-      "collide", model("bracket.obj"), model("pin.obj"), "--move-b", "0.05 0.05 0.5", "--budget", "2"};
+      "collide", model("bracket.obj"), model("pin.obj"), "--move-b", "0.05 0.05 0.5", "--max-splits", "2"};
   const Outcome ended = run_snug(words);
   ASSERT_EQ(ended.status, 5) << ended.out;
-  EXPECT_NE(ended.out.find("give a larger --budget"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("give a larger --max-splits"), std::string::npos) << ended.out;
   EXPECT_EQ(ended.out.find("tolerance"), std::string::npos) << ended.out;
   Words larger = words;
   larger.back() = "100000";
   EXPECT_EQ(run_snug(larger).status, 0);
 }
 
+TEST_F(advice, is_no_budget_where_a_query_may_keep_no_more_pieces) {
+  const std::string pawn = model("pawn.obj");
+  const Outcome same = run_snug({"collide", pawn, pawn, "--tolerance", "0", "--max-splits", "1000000000"});
+  EXPECT_EQ(same.status, 5);
+  EXPECT_EQ(same.out.find("max-splits"), std::string::npos) << same.out;
+}
+
 TEST_F(advice, of_distance) {
-  const Words words{"distance", model("bracket.obj"), model("pin.obj"), "--move-b", "0 0 5", "--precision",
+  const Words words{"distance", model("bracket.obj"), model("pin.obj"), "--move-b", "0 0 5", "--absolute",
                     "1e-5"};
-  expect_helps(with(words, {"--budget", "10"}), "give a larger --budget", {});
-  EXPECT_EQ(run_snug(with(words, {"--budget", "100000"})).status, 0);
+  expect_helps(with(words, {"--max-splits", "10"}), "give a larger --max-splits", {});
+  EXPECT_EQ(run_snug(with(words, {"--max-splits", "100000"})).status, 0);
 }
 
 TEST_F(advice, of_bound) {
   const Words words{"bound", model("pin.obj")};
-  expect_helps(with(words, {"--tolerance", "0.1%", "--budget", "10"}), "give a larger --budget", {});
-  EXPECT_EQ(run_snug(with(words, {"--tolerance", "0.1%", "--budget", "1000000"})).status, 0);
+  expect_helps(with(words, {"--error", "0.1%", "--max-splits", "10"}), "give a larger --max-splits", {});
+  EXPECT_EQ(run_snug(with(words, {"--error", "0.1%", "--max-splits", "1000000"})).status, 0);
   const Words fine{"bound", write("triangle.obj", "v 0.1 0.2 0.3\nv 1.7 0.3 0.1\nv 0.4 1.9 0.7\nf 1 2 3\n"),
                    "--scheme", "loop"};
-  expect_helps(with(fine, {"--tolerance", "1e-30", "--budget", "100000000"}), "give a larger --tolerance",
-               {});
-  EXPECT_EQ(run_snug(with(fine, {"--tolerance", "1e-3"})).status, 0);
+  expect_helps(with(fine, {"--error", "1e-30", "--max-splits", "100000000"}), "give a larger --error", {});
+  EXPECT_EQ(run_snug(with(fine, {"--error", "1e-3"})).status, 0);
 }
 
 TEST_F(advice, of_measure) {
   const Words words{"measure", model("pin.obj")};
-  const std::string text = "give a larger --budget or --precision";
-  expect_helps(with(words, {"--precision", "1e-7", "--budget", "10"}), text, {});
-  EXPECT_EQ(run_snug(with(words, {"--precision", "1e-7"})).status, 0);
-  expect_helps(with(words, {"--precision", "1e-14"}), text, {});
+  const std::string text = "give a larger --max-splits or --relative";
+  expect_helps(with(words, {"--relative", "1e-7", "--max-splits", "10"}), text, {});
+  EXPECT_EQ(run_snug(with(words, {"--relative", "1e-7"})).status, 0);
+  expect_helps(with(words, {"--relative", "1e-14"}), "rounding is in the way; give a larger --relative", {});
 }
 
 TEST_F(advice, of_deviation) {
   const Words words{"deviation", model("bust.obj"), model("bust.obj"), "--scheme", "loop"};
-  expect_helps(with(words, {"--precision", "0.01%", "--budget", "5"}),
-               "give a larger --budget or --precision", {});
-  EXPECT_EQ(run_snug(with(words, {"--precision", "0.01%", "--budget", "1000000"})).status, 0);
-  EXPECT_EQ(run_snug(with(words, {"--precision", "100%", "--budget", "5"})).status, 0);
+  expect_helps(with(words, {"--absolute", "0.01%", "--max-splits", "5"}),
+               "give a larger --max-splits or --absolute", {});
+  EXPECT_EQ(run_snug(with(words, {"--absolute", "0.01%", "--max-splits", "1000000"})).status, 0);
+  EXPECT_EQ(run_snug(with(words, {"--absolute", "100%", "--max-splits", "5"})).status, 0);
 }
 
 TEST_F(advice, of_ray) {
   const std::string rays = write("through.rays", "0.1 0.2 9 0 0 -1\n");
   const Words words{"ray", model("bust.obj"), "--scheme", "loop", "--rays", rays, "--all"};
-  const Outcome ended = run_snug(with(words, {"--budget", "1"}));
+  const Outcome ended = run_snug(with(words, {"--max-splits", "1"}));
   EXPECT_EQ(ended.status, 5);
-  EXPECT_NE(ended.out.find("give a larger --budget"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("give a larger --max-splits"), std::string::npos) << ended.out;
   EXPECT_EQ(run_snug(words).status, 0);
 }
 
@@ -171,7 +177,7 @@ TEST_F(advice, of_an_envelope_says_that_a_saddle_corner_has_none) {
       }
     }
   }
-  const Outcome outcome = run_snug({"envelope", write("saddle.obj", text), "--scheme", "flat", "--tolerance",
+  const Outcome outcome = run_snug({"envelope", write("saddle.obj", text), "--scheme", "flat", "--error",
                                     "0.05", "-o", folder_.file("e.obj")});
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_NE((outcome.out + outcome.err).find("not at a spike, a fold or a saddle-shaped corner"),

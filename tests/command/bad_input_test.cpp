@@ -91,7 +91,7 @@ TEST(bad_input, missing_files_and_folders_are_named) {
 TEST(bad_input, a_lone_triangle_works) {
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (const char* rule : {"edge-and-corner", "edge-only"}) {
-    EXPECT_EQ(run_snug({"bound", "-", "--boundary", rule, "--tolerance", "0.1%"}, triangle).status, 0);
+    EXPECT_EQ(run_snug({"bound", "-", "--boundary", rule, "--error", "0.1%"}, triangle).status, 0);
   }
   const auto none =
       nlohmann::json::parse(run_snug({"bound", "-", "--boundary", "none", "--json"}, triangle).out);

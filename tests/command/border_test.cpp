@@ -92,7 +92,7 @@ TEST(border, standard_output_that_is_closed_or_full_is_status_3) {
       {"subdivide", mesh, "--json", "-o", folder.file("d.obj")},
       {"render", mesh, "--size", "20", "-o", folder.file("e.png")},
       {"collide", mesh, mesh, "--tolerance", "10%"},
-      {"distance", mesh, mesh, "--precision", "50%", "--json"},
+      {"distance", mesh, mesh, "--absolute", "50%", "--json"},
       {"--help"},
       {"--version"},
       {"collide", "--help"}};
@@ -182,7 +182,7 @@ TEST(border, errors_are_one_line_whatever_an_argument_holds) {
       {"info", model("star.obj"), "--scheme", strange},
       {"info", model("star.obj"), "-o", strange},
       {"info", model("star.obj"), "--threads", strange},
-      {"bound", model("star.obj"), "--tolerance", strange},
+      {"bound", model("star.obj"), "--error", strange},
       {"subdivide", model("star.obj"), "-o", "/no/" + strange},
       {"render", model("star.obj"), "-o", strange},
       {"render", strange, "-o", "x.png"},

@@ -24,35 +24,32 @@ std::vector<Question> questions(const TemporaryFolder& folder, const std::string
                                 const std::string& points, const std::string& rays) {
   const std::string pawn = model("pawn.obj"), pin = model("pin.obj"), out = folder.file("out.ply");
   return {
-      {{"bound", pawn, "--tolerance", "1e-9"}, "1000", "/splits"},
-      {{"render", pawn, "--enclosures", "--tolerance", "1e-9", "--size", "100", "-o", folder.file("out.png")},
+      {{"bound", pawn, "--error", "1e-9"}, "1000", "/splits"},
+      {{"render", pawn, "--enclosures", "--error", "1e-9", "--size", "100", "-o", folder.file("out.png")},
        "1000",
        "",
        false},
       {{"collide", pawn, pawn, "--tolerance", "1e-13"}, "1000", "/stats/splits"},
-      {{"collide", pawn, pawn, "--move-b", "0.1 0.3 0", "--all", "--precision", "1e-9", "--tolerance",
-        "1e-9"},
+      {{"collide", pawn, pawn, "--move-b", "0.1 0.3 0", "--all", "--error", "1e-9", "--tolerance", "1e-9"},
        "1000",
        ""},
       {{"collide", pawn, pawn, "--move-b", "0.1 0.3 0", "--solid", "--penetration"}, "1000", "", false},
-      {{"distance", pawn, pin, "--move-b", "0 0 9", "--precision", "1e-14"}, "1000", "/stats/splits"},
-      {{"closest", pawn, "--points", points, "--precision", "1e-14"}, "1000", ""},
-      {{"ray", pawn, "--rays", rays, "--precision", "1e-14"}, "10", ""},
-      {{"self", pawn, "--tolerance", "1e-7"}, "1000", ""},
-      {{"measure", pawn, "--precision", "1e-12"}, "1000", "/stats/splits"},
-      {{"contact", pawn, pawn, "--velocity-b", "0 0 9", "--move-b", "1 0 -5", "--tolerance", "1e-13"},
+      {{"distance", pawn, pin, "--move-b", "0 0 9", "--absolute", "1e-14"}, "1000", "/stats/splits"},
+      {{"closest", pawn, "--points", points, "--absolute", "1e-14"}, "1000", ""},
+      {{"ray", pawn, "--rays", rays, "--absolute", "1e-14"}, "10", ""},
+      {{"self-contact", pawn, "--within", "1e-7"}, "1000", ""},
+      {{"measure", pawn, "--relative", "1e-12"}, "1000", "/stats/splits"},
+      {{"time-of-contact", pawn, pawn, "--velocity-b", "0 0 9", "--move-b", "1 0 -5", "--tolerance", "1e-13"},
        "5",
        ""},
-      {{"deviation", pawn, facets, "--precision", "1e-8"}, "10000", ""},
-      {{"deviation", pawn, pin, "--surface", "--precision", "1e-9"}, "10000", ""},
-      {{"hull", pin, "--tolerance", "1e-7", "--outer", out}, "300", "/outer/triangles"},
-      {{"hull", pin, "--tolerance", "1e-7", "--inner", out}, "30000", "/inner/triangles"},
-      {{"envelope", pawn, "--tolerance", "1e-7", "-o", folder.file("around.obj")},
-       "300",
-       "/envelope/triangles"},
-      {{"tessellate", pawn, "--tolerance", "1e-9", "-o", out}, "1000", "/triangles"},
+      {{"deviation", pawn, facets, "--absolute", "1e-8"}, "10000", ""},
+      {{"deviation", pawn, pin, "--surface", "--absolute", "1e-9"}, "10000", ""},
+      {{"hull", pin, "--error", "1e-7", "--outer", out}, "300", "/outer/triangles"},
+      {{"hull", pin, "--error", "1e-7", "--inner", out}, "30000", "/inner/triangles"},
+      {{"envelope", pawn, "--error", "1e-7", "-o", folder.file("around.obj")}, "300", "/envelope/triangles"},
+      {{"tessellate", pawn, "--error", "1e-9", "-o", out}, "1000", "/triangles"},
       {{"tessellate", pawn, "--max-angle", "0.01", "-o", out}, "1000", "/triangles"},
-      {{"tessellate", pawn, "--tolerance", "1e-9", "--coarsen", "-o", out}, "1000", "/triangles"},
+      {{"tessellate", pawn, "--error", "1e-9", "--coarsen", "-o", out}, "1000", "/triangles"},
       {{"tessellate", pawn, "--max-triangles", "4000000000", "-o", out}, "1000", "/triangles"},
   };
 }
@@ -73,7 +70,7 @@ TEST(budget, bounds_the_work_and_the_memory_of_every_command) {
                            {}};
   for (const auto& [arguments, budget, count, spent] : questions(folder, facets, points, rays)) {
     std::vector<std::string> command = arguments;
-    for (const char* const more : {"--budget", budget.c_str(), "--quiet"}) command.emplace_back(more);
+    for (const char* const more : {"--max-splits", budget.c_str(), "--quiet"}) command.emplace_back(more);
     if (command[0] != "render") command.emplace_back("--json");
     const Outcome outcome = run_snug_in(small, command);
     std::string line;
@@ -91,7 +88,7 @@ TEST(budget, numbers_of_triangles_that_are_named_are_enough) {
   const TemporaryFolder folder;
   const std::string out = folder.file("out.off"), pawn = model("pawn.obj");
   const auto asked = [&](const std::string& most, const std::string& budget, const std::string& edge) {
-    return run_snug({"tessellate", pawn, "--max-triangles", most, "--budget", budget, "--max-edge", edge,
+    return run_snug({"tessellate", pawn, "--max-triangles", most, "--max-splits", budget, "--max-edge", edge,
                      "--quiet", "-o", out});
   };
   for (const char* const edge : {"90%", "5%", "1%"}) {

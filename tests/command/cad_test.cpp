@@ -101,7 +101,7 @@ TEST(sharp, makes_boxes_of_facets_what_they_are) {
   }
   for (const std::vector<std::string>& options :
        std::vector<std::vector<std::string>>{{"--sharp", "auto"}, {"--scheme", "flat"}}) {
-    const Outcome apart = run_snug({"distance", box, box, options[0], options[1], "--precision", "1e-9",
+    const Outcome apart = run_snug({"distance", box, box, options[0], options[1], "--absolute", "1e-9",
                                     "--json", "--quiet", "--place-b", "1 0 0 41 0 1 0 0 0 0 1 0"});
     const nlohmann::json distance = nlohmann::json::parse(apart.out)["distance"];
     EXPECT_NEAR(distance[0].get<double>(), 1, 1e-9);
@@ -178,7 +178,7 @@ TEST(sharp, gives_known_parts_their_known_clearance) {
     std::vector<std::string> arguments{command,   cad + a,     cad + b,
                                        "--sharp", "auto",      "--json",
                                        "--quiet", "--place-b", "1 0 0 " + shift + " 0 1 0 0 0 0 1 0"};
-    arguments.insert(arguments.end(), {command == "collide" ? "--tolerance" : "--precision", "1e-9"});
+    arguments.insert(arguments.end(), {command == "collide" ? "--tolerance" : "--absolute", "1e-9"});
     return nlohmann::json::parse(run_snug(arguments).out);
   };
   const nlohmann::json boxes = ask("distance", "box.stl", "box.stl", "41")["distance"];

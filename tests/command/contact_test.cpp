@@ -25,13 +25,13 @@ class contact : public ::testing::Test {
     return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
   }
   [[nodiscard]] json answer(std::vector<std::string> arguments, int status = 0) const {
-    arguments.insert(arguments.begin(), {"contact", cube_, cube_, "--scheme", "bilinear", "--json"});
+    arguments.insert(arguments.begin(), {"time-of-contact", cube_, cube_, "--scheme", "bilinear", "--json"});
     const Outcome outcome = run_snug(arguments);
     EXPECT_EQ(outcome.status, status) << outcome.err;
     return json::parse(outcome.out, nullptr, false);
   }
   [[nodiscard]] Outcome refused(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"contact", cube_, cube_, "--scheme", "bilinear"});
+    arguments.insert(arguments.begin(), {"time-of-contact", cube_, cube_, "--scheme", "bilinear"});
     return run_snug(arguments);
   }
 
@@ -43,7 +43,7 @@ TEST_F(contact, of_cubes_is_told_for_every_way_to_move) {
   // From x = 3 by -4 the faces meet at half the time; a little off the middle.
   const json steady = answer({"--move-b", "3 0.1 0.2", "--velocity-b", "-4 0 0", "--tolerance", "1e-3"});
   EXPECT_EQ(steady["verdict"], "intersecting");
-  EXPECT_EQ(steady["reached"], true);
+  EXPECT_EQ(steady["outcome"], "complete");
   EXPECT_EQ(steady["duration"], 1);
   EXPECT_LE(steady["time"][0], 0.5);
   EXPECT_GE(steady["time"][1], 0.5 - 1e-12);
@@ -111,14 +111,14 @@ TEST_F(contact, of_meshes_that_deform_is_told) {
 TEST_F(contact, that_is_undecided_names_what_decides_it) {
   const auto output = [&](std::vector<std::string> more, const std::string& tolerance,
                           const std::string& budget) {
-    more.insert(more.end(), {"--tolerance", tolerance, "--budget", budget});
+    more.insert(more.end(), {"--tolerance", tolerance, "--max-splits", budget});
     const Outcome outcome = refused(more);
     EXPECT_EQ(outcome.status, outcome.out.find("undecided") == std::string::npos ? 0 : 5) << outcome.out;
     return outcome.out;
   };
   // Along the other one, 1e-5 above it.
   const std::vector<std::string> close{"--move-b", "-5 0 1.00001", "--velocity-b", "10 0 0"};
-  EXPECT_NE(output(close, "1e-7", "4000").find("give a larger --budget\n"), std::string::npos);
+  EXPECT_NE(output(close, "1e-7", "4000").find("give a larger --max-splits\n"), std::string::npos);
   EXPECT_NE(output(close, "1e-7", "1000000").find("separated: proved"), std::string::npos);
   // On it.
   const std::vector<std::string> on{"--move-b", "-0.5 0 1", "--velocity-b", "1 0 0"};

@@ -18,7 +18,7 @@ TEST(contacts_command, lists_regions_and_curves) {
   const TemporaryFolder folder;
   const std::string curves = folder.file("curves.obj");
   const std::vector<std::string> arguments{
-      "collide", model("bust.obj"), model("pawn.obj"), "--all", "--precision", "0.2%", "--curves", curves};
+      "collide", model("bust.obj"), model("pawn.obj"), "--all", "--error", "0.2%", "--curves", curves};
   const Outcome text = run_snug(arguments);
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_NE(text.out.find("region 0: intersecting"), std::string::npos) << text.out;
@@ -26,7 +26,7 @@ TEST(contacts_command, lists_regions_and_curves) {
   std::vector<std::string> with_json = arguments;
   with_json.emplace_back("--json");
   const json answer = json::parse(run_snug(with_json).out);
-  EXPECT_TRUE(answer["complete"].get<bool>());
+  EXPECT_TRUE(answer["exhaustive"].get<bool>());
   ASSERT_EQ(answer["regions"].size(), 1u);
   EXPECT_EQ(answer["regions"][0]["verdict"], "intersecting");
   EXPECT_EQ(answer["regions"][0]["witness_at"].size(), 2u);
@@ -47,7 +47,7 @@ TEST(contacts_command, lists_regions_and_curves) {
 
 TEST(contacts_command, is_coarser_with_a_small_budget_and_says_so) {
   const Outcome outcome =
-      run_snug({"collide", model("bust.obj"), model("pawn.obj"), "--all", "--budget", "2000"});
+      run_snug({"collide", model("bust.obj"), model("pawn.obj"), "--all", "--max-splits", "2000"});
   EXPECT_EQ(outcome.status, 5) << outcome.out;
   EXPECT_NE(outcome.out.find("budget"), std::string::npos) << outcome.out;
 }
@@ -55,11 +55,11 @@ TEST(contacts_command, is_coarser_with_a_small_budget_and_says_so) {
 TEST(contacts_command, refuses_what_does_not_go_together) {
   const std::string a = model("star.obj");
   for (const std::vector<std::string>& more :
-       std::vector<std::vector<std::string>>{{"--precision", "1%"},
+       std::vector<std::vector<std::string>>{{"--error", "1%"},
                                              {"--curves", "c.obj"},
                                              {"--all", "--solid"},
                                              {"--all", "--curves", "c.ply"},
-                                             {"--all", "--precision", "0"}}) {
+                                             {"--all", "--error", "0"}}) {
     std::vector<std::string> arguments{"collide", a, a};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(run_snug(arguments).status, 2) << more.back();

@@ -36,12 +36,12 @@ void expect_refused(const std::vector<std::string>& arguments, const std::string
 
 TEST(curve, bound_has_the_fields_of_the_contract) {
   for (const char* degree : {"2", "3"}) {
-    const json document = answer({"bound", "-", "--degree", degree, "--tolerance", "1%"}, open_line);
+    const json document = answer({"bound", "-", "--degree", degree, "--error", "1%"}, open_line);
     EXPECT_EQ(document["command"], "bound");
     EXPECT_EQ(document["scheme"], "curve");
     EXPECT_EQ(document["degree"], std::stoi(degree));
     EXPECT_EQ(document["count"], document["enclosures"].size());
-    EXPECT_EQ(document["reached"], true);
+    EXPECT_EQ(document["outcome"], "complete");
     double largest = 0, covered = 0;
     for (const json& e : document["enclosures"]) {
       const auto piece = e["piece"].get<std::string>();
@@ -80,8 +80,8 @@ TEST(curve, options_of_surfaces_are_refused) {
 }
 
 TEST(curve, bound_that_runs_out_of_budget_ends_with_5) {
-  const json document = answer({"bound", "-", "--tolerance", "0.001%", "--budget", "4"}, open_line, 5);
-  EXPECT_EQ(document["reached"], false);
+  const json document = answer({"bound", "-", "--error", "0.001%", "--max-splits", "4"}, open_line, 5);
+  EXPECT_EQ(document["outcome"], "budget-spent");
   EXPECT_EQ(document["splits"], 4);
 }
 
@@ -97,8 +97,8 @@ TEST(curve, eval_starts_and_ends_at_the_ends_of_an_open_polyline) {
     EXPECT_EQ(list[0]["edge"], 0);
     EXPECT_EQ(list[0]["t"], 0.0);
     for (std::size_t a = 0; a < 3; ++a) {
-      EXPECT_NEAR(list[0]["position"][a].get<double>(), 0, 1e-14);
-      EXPECT_NEAR(list[8]["position"][a].get<double>(), (std::array{0.0, 1.0, 0.5}[a]), 1e-14);
+      EXPECT_NEAR(list[0]["point"][a].get<double>(), 0, 1e-14);
+      EXPECT_NEAR(list[8]["point"][a].get<double>(), (std::array{0.0, 1.0, 0.5}[a]), 1e-14);
     }
   }
 }
@@ -194,8 +194,8 @@ TEST(curve, render_draws_curves_cages_and_enclosures) {
   EXPECT_NE(drawn(mesh, {"--cage"}), bare);
   EXPECT_NE(drawn(mesh, {"--enclosures", "--level", "2"}, &said), bare);
   EXPECT_EQ(said["enclosures"], 16);
-  drawn(mesh, {"--enclosures", "--tolerance", "1%"}, &said);
-  EXPECT_EQ(said["enclosures"], answer({"bound", mesh, "--tolerance", "1%"}, "")["count"]);
+  drawn(mesh, {"--enclosures", "--error", "1%"}, &said);
+  EXPECT_EQ(said["enclosures"], answer({"bound", mesh, "--error", "1%"}, "")["count"]);
   // More pixels: more chords and sides.
   json coarse, fine;
   drawn(mesh, {}, &coarse, "40");

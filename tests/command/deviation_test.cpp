@@ -77,14 +77,14 @@ class deviation : public ::testing::Test {
 
 TEST_F(deviation, has_an_interval_and_points_both_ways) {
   const std::string large = write("large.obj", cube(3, -1, -1, -1, Faces::triangles));
-  const json found = answer({quads_, large, "--scheme", "bilinear", "--precision", "1e-5"});
+  const json found = answer({quads_, large, "--scheme", "bilinear", "--absolute", "1e-5"});
   EXPECT_EQ(found["command"], "deviation");
   EXPECT_EQ(found["mesh"], json({quads_, large}));
   EXPECT_EQ(found["scheme"], json({"bilinear", "flat"}));
-  EXPECT_EQ(found["precision"], 1e-5);
-  EXPECT_EQ(found["tolerance"], json(nullptr));
+  EXPECT_EQ(found["absolute"], 1e-5);
+  EXPECT_EQ(found["threshold"], json(nullptr));
   EXPECT_EQ(found["verdict"], json(nullptr));
-  EXPECT_EQ(found["reached"], true);
+  EXPECT_EQ(found["outcome"], "complete");
   expect_interval(found["from_surface"], 1, 1e-5);
   expect_interval(found["from_candidate"], std::sqrt(3.0), 1e-5);
   for (std::size_t way = 0; way < 2; ++way) {
@@ -100,26 +100,26 @@ TEST_F(deviation, has_an_interval_and_points_both_ways) {
   EXPECT_EQ(found["points_at"][1], json(nullptr));
   EXPECT_FALSE(found.contains("inside"));
   // A percentage is one of the mesh.
-  EXPECT_EQ(answer({quads_, large, "--precision", "1%"})["precision"], 0.01);
-  EXPECT_EQ(answer({quads_, large})["precision"], 1e-4);
+  EXPECT_EQ(answer({quads_, large, "--absolute", "1%"})["absolute"], 0.01);
+  EXPECT_EQ(answer({quads_, large})["absolute"], 1e-4);
 }
 
 TEST_F(deviation, is_told_in_words_too) {
-  const Outcome outcome = run({quads_, moved_, "--scheme", "bilinear", "--tolerance", "0.5"});
+  const Outcome outcome = run({quads_, moved_, "--scheme", "bilinear", "--threshold", "0.5"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("within: proved, no point of either is farther than 0.5"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("from the surface to the candidate"), std::string::npos);
   EXPECT_NE(outcome.out.find("from the candidate to the surface"), std::string::npos);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_NE(run({quads_, moved_, "--scheme", "bilinear", "--tolerance", "0.1"}).out.find("exceeds: proved"),
+  EXPECT_NE(run({quads_, moved_, "--scheme", "bilinear", "--threshold", "0.1"}).out.find("exceeds: proved"),
             std::string::npos);
-  EXPECT_NE(run({quads_, moved_, "--budget", "1"}).out.find("the precision was not reached"),
+  EXPECT_NE(run({quads_, moved_, "--max-splits", "1"}).out.find("the precision was not reached"),
             std::string::npos);
 }
 
 TEST_F(deviation, answers_a_tolerance_with_a_verdict) {
-  const std::vector<std::string> asked{quads_, moved_, "--scheme", "bilinear", "--tolerance"};
+  const std::vector<std::string> asked{quads_, moved_, "--scheme", "bilinear", "--threshold"};
   const auto with = [&](const std::string& tolerance, std::vector<std::string> more = {}) {
     std::vector<std::string> all = asked;
     all.push_back(tolerance);
@@ -127,19 +127,19 @@ TEST_F(deviation, answers_a_tolerance_with_a_verdict) {
     return all;
   };
   EXPECT_EQ(answer(with("0.3"))["verdict"], "within");
-  EXPECT_EQ(answer(with("30%"))["tolerance"], 0.3);
+  EXPECT_EQ(answer(with("30%"))["threshold"], 0.3);
   EXPECT_EQ(answer(with("0.2"))["verdict"], "exceeds");
   EXPECT_EQ(answer(with("0"))["verdict"], "exceeds");
   EXPECT_EQ(run(with("0.3", {"--exit-code"})).status, 0);
   EXPECT_EQ(run(with("0.2", {"--exit-code"})).status, 13);
   // Coarse as it may be, the distance is the tolerance.
-  EXPECT_EQ(answer(with("0.25", {"--precision", "0.01"}), 5)["verdict"], "undecided");
-  const Outcome undecided = run(with("0.25", {"--precision", "0.01", "--exit-code"}));
+  EXPECT_EQ(answer(with("0.25", {"--absolute", "0.01"}), 5)["verdict"], "undecided");
+  const Outcome undecided = run(with("0.25", {"--absolute", "0.01", "--exit-code"}));
   EXPECT_EQ(undecided.status, 12);
-  EXPECT_NE(undecided.out.find("give a smaller --precision"), std::string::npos) << undecided.out;
+  EXPECT_NE(undecided.out.find("give a smaller --absolute"), std::string::npos) << undecided.out;
   EXPECT_EQ(run({quads_, moved_, "--exit-code"}).status, 2);
   EXPECT_EQ(run(with("-1")).status, 2);
-  EXPECT_EQ(run({quads_, moved_, "--precision", "0"}).status, 2);
+  EXPECT_EQ(run({quads_, moved_, "--absolute", "0"}).status, 2);
 }
 
 TEST_F(deviation, on_each_side_of_a_solid) {
@@ -179,7 +179,7 @@ TEST_F(deviation, takes_triangles_however_they_are) {
   const std::string soup = write("soup.obj",
                                  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 2 2\nv 9 9 9\n"
                                  "f 1 2 3\nf 1 2 3\nf 3 2 1\nf 1 2 4\nf 1 1 1\nf 1 2 2\n");
-  EXPECT_EQ(answer({quads_, soup, "--scheme", "bilinear"})["reached"], true);
+  EXPECT_EQ(answer({quads_, soup, "--scheme", "bilinear"})["outcome"], "complete");
   for (const char* name : {"unit.off", "unit.ply", "unit.stl"}) {
     const std::string file = folder_.file(name);
     ASSERT_EQ(
@@ -207,8 +207,8 @@ TEST_F(deviation, of_what_is_no_triangle_is_refused) {
 }
 
 TEST_F(deviation, that_was_not_reached_is_status_5) {
-  const json found = answer({quads_, moved_, "--budget", "1"}, 5);
-  EXPECT_EQ(found["reached"], false);
+  const json found = answer({quads_, moved_, "--max-splits", "1"}, 5);
+  EXPECT_EQ(found["outcome"], "budget-spent");
   EXPECT_LE(found["from_surface"][0], found["from_surface"][1]);
 }
 

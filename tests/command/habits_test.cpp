@@ -134,8 +134,8 @@ TEST(words, are_numbers_in_range_given_once_and_with_what_they_need) {
   expect_usage_error({"info", star, "--threads="}, "'' is not a whole number");
   expect_usage_error({"info", star, "--json=no"}, "--json takes no value");
   expect_usage_error({"info", star, "--threads", "1", "--threads", "2"}, "--threads is given twice");
-  expect_usage_error({"bound", star, "--level", "1", "--tolerance", "1%"},
-                     "--level and --tolerance exclude each other");
+  expect_usage_error({"bound", star, "--level", "1", "--error", "1%"},
+                     "--level and --error exclude each other");
   expect_usage_error({"render", star, "--level", "1", "-o", "x.png"}, "--level needs --enclosures");
   expect_usage_error({"closest", star}, "--points is missing");
   expect_usage_error({"closest", star, "--points", "p.txt", "--relative", "2"},
@@ -198,7 +198,7 @@ TEST(help, is_in_groups_with_an_example_and_options_for_research_last) {
               {"Usage: snug collide A B [OPTIONS]", "Options:\n", "--tolerance LENGTH", "(default 0.1%)",
                "Poses:\n", "--place-a", "Meshes:\n", "--scheme", "Output:\n", "--json", "Effort:\n",
                "--threads", "For research:\n", "--bounds", "Examples:\n  snug collide "});
-  expect_help(run_snug({"bound", "-h"}), {"--tolerance", "For research:\n", "--bounds"});
+  expect_help(run_snug({"bound", "-h"}), {"--error", "For research:\n", "--bounds"});
   expect_help(run_snug({"subdivide", "--help"}), {"--level", "Example"});
   for (const char* command : {"distance", "closest", "render"}) {
     expect_help(run_snug({command, "--help"}), {"Usage: snug ", "For research:\n", "Example"});

@@ -61,20 +61,19 @@ TEST(hull, writes_verified_triangles_in_every_format) {
   for (const char* const format : {"obj", "off", "ply", "stl"}) {
     const std::string inner = folder.file(std::string("in.") + format),
                       outer = folder.file(std::string("out.") + format);
-    const json found = answer({"hull", pawn, "--tolerance", "2%", "--inner", inner, "--outer", outer});
+    const json found = answer({"hull", pawn, "--error", "2%", "--inner", inner, "--outer", outer});
     EXPECT_EQ(found["command"], "hull");
     EXPECT_EQ(found["scheme"], "loop");
-    EXPECT_TRUE(found["verified"]);
+    EXPECT_EQ(found["outcome"], "complete");
     EXPECT_TRUE(found["closed"]);
     EXPECT_EQ(found["problems"], json::array());
     for (const auto& [side, file] : {std::pair{"inner", inner}, {"outer", outer}}) {
-      EXPECT_TRUE(found[side]["verified"]);
-      EXPECT_LE(found[side]["gap"], found["tolerance"]);
+      EXPECT_LE(found[side]["gap"], found["error"]);
       const ControlMesh mesh = read_closed(file);
       EXPECT_EQ(mesh.face_count(), found[side]["triangles"]) << format;
       EXPECT_EQ(mesh.vertex_count(), found[side]["vertices"]) << format;
       const json apart = answer({"collide", file, pawn, "--scheme-a", "flat", "--tolerance", "0", "--solid"});
-      EXPECT_EQ(apart["inner"], std::string(side) == "inner" ? "a" : "b") << format;
+      EXPECT_EQ(apart["contained"], std::string(side) == "inner" ? "a" : "b") << format;
       EXPECT_EQ(answer({"collide", file, pawn, "--scheme-a", "flat", "--tolerance", "0"})["verdict"],
                 "separated");
     }
@@ -84,7 +83,7 @@ TEST(hull, writes_verified_triangles_in_every_format) {
 TEST(hull, tells_people_what_was_written) {
   const TemporaryFolder folder;
   const Outcome outcome =
-      run_snug({"hull", model("pawn.obj"), "--tolerance", "2%", "--outer", folder.file("out.ply")});
+      run_snug({"hull", model("pawn.obj"), "--error", "2%", "--outer", folder.file("out.ply")});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.out.find("out.ply: outer hull of "), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("inner"), std::string::npos);
@@ -92,8 +91,7 @@ TEST(hull, tells_people_what_was_written) {
 
 TEST(hull, of_one_side_says_null_of_the_other) {
   const TemporaryFolder folder;
-  const json found =
-      answer({"hull", model("pawn.obj"), "--tolerance", "2%", "--inner", folder.file("in.ply")});
+  const json found = answer({"hull", model("pawn.obj"), "--error", "2%", "--inner", folder.file("in.ply")});
   EXPECT_EQ(found["outer"], nullptr);
   EXPECT_FALSE(found["inner"].is_null());
 }
@@ -101,10 +99,10 @@ TEST(hull, of_one_side_says_null_of_the_other) {
 TEST(hull, of_open_surfaces_says_so) {
   const TemporaryFolder folder;
   const std::string sheet = write(folder, "sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nf 1 2 3 4\n");
-  const Outcome outcome = run_snug({"hull", sheet, "--tolerance", "5%", "--outer", folder.file("out.ply")});
+  const Outcome outcome = run_snug({"hull", sheet, "--error", "5%", "--outer", folder.file("out.ply")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("the surface is open"), std::string::npos) << outcome.out;
-  EXPECT_FALSE(answer({"hull", sheet, "--tolerance", "5%", "--outer", folder.file("out.ply")})["closed"]);
+  EXPECT_FALSE(answer({"hull", sheet, "--error", "5%", "--outer", folder.file("out.ply")})["closed"]);
 }
 
 // Two cubes on each other, and their names.
@@ -115,20 +113,19 @@ TEST(hull, writes_nothing_that_is_not_verified) {
                                          "v 1 0 0\nv 2 0 0\nv 1 1 0\nv 2 1 0\nv 1 0 1\nv 2 0 1\nv 1 1 1\n"
                                          "v 2 1 1\nf 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\n"
                                          "f 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n");
-  const std::vector<std::string> arguments{"hull",        touching,
-                                           "--scheme",    "bilinear",
-                                           "--tolerance", "1%",
-                                           "--inner",     results.file("in.obj"),
-                                           "--outer",     results.file("out.obj"),
+  const std::vector<std::string> arguments{"hull",     touching,
+                                           "--scheme", "bilinear",
+                                           "--error",  "1%",
+                                           "--inner",  results.file("in.obj"),
+                                           "--outer",  results.file("out.obj"),
                                            "--quiet"};
   const Outcome outcome = run_snug(arguments);
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_NE(outcome.out.find("not verified, so nothing was written"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("not proved, so nothing was written"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("outer hull at face 5, near ("), std::string::npos) << outcome.out;
   EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 12);
   const json found = answer(arguments, 5);
-  EXPECT_FALSE(found["verified"]);
-  EXPECT_FALSE(found["outer"]["verified"]);
+  EXPECT_NE(found["outcome"], "complete");
   EXPECT_GE(found["problems"].size(), 1u);
   EXPECT_LE(found["problems"].size(), 10u);
   for (const json& problem : found["problems"]) {
@@ -142,24 +139,24 @@ TEST(hull, writes_nothing_that_is_not_verified) {
 TEST(hull, says_what_is_wrong) {
   const TemporaryFolder folder, sources;
   const std::string pawn = model("pawn.obj"), file = folder.file("a.ply");
-  expect_refused({"hull", pawn, "--tolerance", "1%"}, 2, "--inner FILE");
-  expect_refused({"hull", pawn, "--inner", file}, 2, "--tolerance");
-  expect_refused({"hull", pawn, "--tolerance", "0", "--inner", file}, 2, "--tolerance");
-  expect_refused({"hull", pawn, "--tolerance", "1%", "--inner", file, "--outer", file}, 2, "the same file");
-  expect_refused({"hull", pawn, "--tolerance", "1%", "--inner", "-"}, 2, "standard output");
-  expect_refused({"hull", pawn, "--tolerance", "1%", "--inner", folder.file("a.txt")}, 3, "written to");
-  expect_refused({"hull", pawn, "--tolerance", "1%", "--inner", file, "-o", folder.file("a.obj")}, 2, "json");
-  expect_refused({"hull", pawn, "--tolerance", "200%", "--inner", file}, 4, "at most ");
-  expect_refused({"hull", pawn, "--tolerance", "1e-20", "--inner", file}, 4, "doubles allow");
-  expect_refused({"hull", pawn, "--tolerance", "1e-7", "--inner", folder.file("a.stl")}, 4, "floats allow");
-  expect_refused({"hull", write(sources, "m.obj", moebius), "--tolerance", "1%", "--inner", file}, 4,
+  expect_refused({"hull", pawn, "--error", "1%"}, 2, "--inner FILE");
+  expect_refused({"hull", pawn, "--inner", file}, 2, "--error");
+  expect_refused({"hull", pawn, "--error", "0", "--inner", file}, 2, "--error");
+  expect_refused({"hull", pawn, "--error", "1%", "--inner", file, "--outer", file}, 2, "the same file");
+  expect_refused({"hull", pawn, "--error", "1%", "--inner", "-"}, 2, "standard output");
+  expect_refused({"hull", pawn, "--error", "1%", "--inner", folder.file("a.txt")}, 3, "written to");
+  expect_refused({"hull", pawn, "--error", "1%", "--inner", file, "-o", folder.file("a.obj")}, 2, "json");
+  expect_refused({"hull", pawn, "--error", "200%", "--inner", file}, 4, "at most ");
+  expect_refused({"hull", pawn, "--error", "1e-20", "--inner", file}, 4, "doubles allow");
+  expect_refused({"hull", pawn, "--error", "1e-7", "--inner", folder.file("a.stl")}, 4, "floats allow");
+  expect_refused({"hull", write(sources, "m.obj", moebius), "--error", "1%", "--inner", file}, 4,
                  "the same way");
   EXPECT_TRUE(folder.empty());
 }
 
 TEST(hull, leaves_nothing_after_a_signal) {
   const TemporaryFolder folder;
-  const Outcome outcome = interrupt_snug({"hull", model("bust.obj"), "--tolerance", "0.001%", "--inner",
+  const Outcome outcome = interrupt_snug({"hull", model("bust.obj"), "--error", "0.001%", "--inner",
                                           folder.file("a.ply"), "--outer", folder.file("b.ply")},
                                          300);
   EXPECT_EQ(outcome.status, 130) << outcome.err;
@@ -169,20 +166,19 @@ TEST(hull, leaves_nothing_after_a_signal) {
 TEST(hull, does_not_depend_on_threads) {
   const TemporaryFolder folder;
   const std::string one = folder.file("one.ply"), three = folder.file("three.ply");
-  answer({"hull", model("ring.obj"), "--tolerance", "1%", "--outer", one, "--threads", "1"});
-  answer({"hull", model("ring.obj"), "--tolerance", "1%", "--outer", three, "--threads", "3"});
+  answer({"hull", model("ring.obj"), "--error", "1%", "--outer", one, "--threads", "1"});
+  answer({"hull", model("ring.obj"), "--error", "1%", "--outer", three, "--threads", "3"});
   EXPECT_EQ(read_file(one, {}), read_file(three, {}));
 }
 
 TEST(envelope, is_closed_and_around_the_solid) {
   const TemporaryFolder folder;
   const std::string pawn = model("pawn.obj"), file = folder.file("around.stl");
-  const json found = answer({"envelope", pawn, "--tolerance", "1%", "-o", file});
-  EXPECT_TRUE(found["verified"]);
-  EXPECT_TRUE(found["envelope"]["verified"]);
-  EXPECT_LE(found["envelope"]["gap"], found["tolerance"]);
+  const json found = answer({"envelope", pawn, "--error", "1%", "-o", file});
+  EXPECT_EQ(found["outcome"], "complete");
+  EXPECT_LE(found["envelope"]["gap"], found["error"]);
   EXPECT_EQ(read_closed(file).face_count(), found["envelope"]["triangles"]);
-  EXPECT_EQ(answer({"collide", file, pawn, "--scheme-a", "flat", "--tolerance", "0", "--solid"})["inner"],
+  EXPECT_EQ(answer({"collide", file, pawn, "--scheme-a", "flat", "--tolerance", "0", "--solid"})["contained"],
             "b");
 }
 
@@ -200,16 +196,16 @@ TEST(envelope, tells_whether_a_part_is_inside) {
   };
   for (const auto& [x, inside] : {std::pair{0.4, true}, {0.8, false}, {1.5, false}}) {
     const json found =
-        answer({"envelope", whole, "--tolerance", "2%", "--scheme", "catmark", "--part", part(0.2, x)});
+        answer({"envelope", whole, "--error", "2%", "--scheme", "catmark", "--part", part(0.2, x)});
     EXPECT_EQ(found["part"]["inside"], inside) << x;
     EXPECT_EQ(found["part"]["clearance"][1] == 0, x == 0.8) << found;
   }
   // The surface that it is around: its clearance is within the gap.
-  const json own = answer({"envelope", whole, "--tolerance", "2%", "--part", whole});
+  const json own = answer({"envelope", whole, "--error", "2%", "--part", whole});
   EXPECT_EQ(own["part"]["inside"], true);
   EXPECT_GT(own["part"]["clearance"][0], 0);
   EXPECT_LE(own["part"]["clearance"][1], own["envelope"]["gap"]);
-  const Outcome outcome = run_snug({"envelope", whole, "--tolerance", "2%", "--part", part(0.2, 1.5)});
+  const Outcome outcome = run_snug({"envelope", whole, "--error", "2%", "--part", part(0.2, 1.5)});
   EXPECT_NE(outcome.out.find("is outside the envelope"), std::string::npos) << outcome.out;
 }
 
@@ -217,11 +213,11 @@ TEST(envelope, says_what_is_wrong) {
   const TemporaryFolder folder, sources;
   const std::string file = folder.file("a.stl"),
                     sheet = write(sources, "sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  expect_refused({"envelope", sheet, "--tolerance", "1%", "-o", file}, 4, "edge");
-  expect_refused({"envelope", model("pawn.obj"), "--tolerance", "1%"}, 2, "--part");
-  expect_refused({"envelope", model("pawn.obj"), "-o", file}, 2, "--tolerance");
-  expect_refused({"envelope", model("pawn.obj"), "--tolerance", "1%", "-o", "-"}, 2, "standard output");
-  expect_refused({"envelope", model("pawn.obj"), "--tolerance", "1%", "-o", folder.file("a.json")}, 3,
+  expect_refused({"envelope", sheet, "--error", "1%", "-o", file}, 4, "edge");
+  expect_refused({"envelope", model("pawn.obj"), "--error", "1%"}, 2, "--part");
+  expect_refused({"envelope", model("pawn.obj"), "-o", file}, 2, "--error");
+  expect_refused({"envelope", model("pawn.obj"), "--error", "1%", "-o", "-"}, 2, "standard output");
+  expect_refused({"envelope", model("pawn.obj"), "--error", "1%", "-o", folder.file("a.json")}, 3,
                  "written to");
   EXPECT_TRUE(folder.empty());
 }

@@ -50,7 +50,7 @@ TEST(info, counts_the_star) {
 }
 
 TEST(bound, has_the_fields_of_the_contract) {
-  const json document = answer({"bound", model("star.obj"), "--tolerance", "2%"});
+  const json document = answer({"bound", model("star.obj"), "--error", "2%"});
   expect_head(document, "bound");
   EXPECT_EQ(document["count"], document["enclosures"].size());
   double largest = 0;
@@ -84,8 +84,8 @@ TEST(bound, gives_cones_of_normals_or_null) {
 }
 
 TEST(bound, that_runs_out_of_budget_ends_with_5_and_prints_what_holds) {
-  const json document = answer({"bound", model("star.obj"), "--tolerance", "0.01%", "--budget", "10"}, 5);
-  EXPECT_EQ(document["reached"], false);
+  const json document = answer({"bound", model("star.obj"), "--error", "0.01%", "--max-splits", "10"}, 5);
+  EXPECT_EQ(document["outcome"], "budget-spent");
   EXPECT_EQ(document["count"], 24 + 3 * 10);
 }
 
@@ -94,7 +94,7 @@ TEST(eval, covers_the_lattice_of_every_face) {
   expect_head(document, "eval");
   ASSERT_EQ(document["points"].size(), 24u * 10);
   for (const json& p : document["points"]) {
-    expect_points(json::array({p["position"], p["tangents"][0], p["tangents"][1]}), 3);
+    expect_points(json::array({p["point"], p["tangents"][0], p["tangents"][1]}), 3);
     EXPECT_TRUE(p["normal"].is_array() || p["normal"].is_null());
     EXPECT_LE(p["u"].get<double>() + p["v"].get<double>(), 1.0);
   }

@@ -45,8 +45,8 @@ TEST_F(measure_command, of_a_box_is_that_of_a_box) {
        {std::vector<std::string>{part, "--scheme", "bilinear"}, {part, "--sharp", "auto"}}) {
     const json found = answer(how);
     EXPECT_EQ(found["command"], "measure");
-    EXPECT_EQ(found["precision"], 1e-4);
-    EXPECT_EQ(found["reached"], true);
+    EXPECT_EQ(found["relative"], 1e-4);
+    EXPECT_EQ(found["outcome"], "complete");
     EXPECT_EQ(found["closed"], true);
     expect_holds(found["area"], 52);
     expect_holds(found["volume"], 24);
@@ -65,22 +65,22 @@ TEST_F(measure_command, of_a_box_is_that_of_a_box) {
 
 TEST_F(measure_command, precision_is_a_share_or_percent) {
   const std::string part = write("box.obj", box);
-  const json rough = answer({part, "--precision", "1%"}), fine = answer({part, "--precision", "1e-6"});
-  EXPECT_EQ(rough["precision"], 0.01);
-  EXPECT_EQ(fine["precision"], 1e-6);
+  const json rough = answer({part, "--relative", "1%"}), fine = answer({part, "--relative", "1e-6"});
+  EXPECT_EQ(rough["relative"], 0.01);
+  EXPECT_EQ(fine["relative"], 1e-6);
   const auto width = [](const json& x) { return x[1].get<double>() - x[0].get<double>(); };
   EXPECT_LE(width(fine["volume"]), 1e-6 * fine["volume"][1].get<double>());
   EXPECT_LE(rough["volume"][0], fine["volume"][1]);
   EXPECT_GE(rough["volume"][1], fine["volume"][0]);
   for (const char* bad : {"-1", "nan", "x", ""}) {
-    EXPECT_EQ(run_snug({"measure", part, "--precision", bad}).status, 2) << bad;
+    EXPECT_EQ(run_snug({"measure", part, "--relative", bad}).status, 2) << bad;
   }
 }
 
 TEST_F(measure_command, ends_with_five_where_the_budget_does) {
   const std::string part = write("box.obj", box);
-  const json found = answer({part, "--scheme", "catmark", "--budget", "10"}, 5);
-  EXPECT_EQ(found["reached"], false);
+  const json found = answer({part, "--scheme", "catmark", "--max-splits", "10"}, 5);
+  EXPECT_EQ(found["outcome"], "budget-spent");
   EXPECT_LT(found["area"][0], found["area"][1]);
 }
 

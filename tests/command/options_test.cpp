@@ -21,7 +21,7 @@ nlohmann::json comparable(const std::vector<std::string>& arguments) {
 
 TEST(threads, change_nothing) {
   for (const std::vector<std::string>& base :
-       {std::vector<std::string>{"bound", model("bust.obj"), "--tolerance", "0.5%", "--json"},
+       {std::vector<std::string>{"bound", model("bust.obj"), "--error", "0.5%", "--json"},
         {"collide", model("bust.obj"), model("pawn.obj"), "--tolerance", "0.1%", "--json"},
         {"eval", model("head.obj"), "--json"}}) {
     auto one = base, two = base;
@@ -36,11 +36,11 @@ TEST(usage, ends_with_2) {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
            {"frobnicate"},
            {"bound"},
-           {"bound", star, "--tolerance", "-1"},
-           {"bound", star, "--tolerance", "0"},
-           {"bound", star, "--tolerance", "1x%"},
-           {"bound", star, "--tolerance", "nan"},
-           {"bound", star, "--tolerance", "1%", "--level", "2"},
+           {"bound", star, "--error", "-1"},
+           {"bound", star, "--error", "0"},
+           {"bound", star, "--error", "1x%"},
+           {"bound", star, "--error", "nan"},
+           {"bound", star, "--error", "1%", "--level", "2"},
            {"bound", star, "--level", "99"},
            {"bound", star, "--scheme", "butterfly"},
            {"bound", star, "--bounds", "tables"},
@@ -63,12 +63,12 @@ TEST(options, that_would_change_nothing_are_refused) {
   const std::string png = folder.file("star.png"), obj = folder.file("star.obj");
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
            {"experiment", "rates"},  // another program's
-           {"info", star, "--budget", "9"},
+           {"info", star, "--max-splits", "9"},
            {"info", star, "--bounds", "table"},
-           {"eval", star, "--budget", "9"},
+           {"eval", star, "--max-splits", "9"},
            {"eval", star, "--bounds", "table"},
            {"eval", star, "--degree", "2"},
-           {"subdivide", star, "-o", obj, "--budget", "9"},
+           {"subdivide", star, "-o", obj, "--max-splits", "9"},
            {"subdivide", star, "-o", obj, "--bounds", "rows"},
            {"subdivide", star, "-o", obj, "--degree", "3"},
            {"subdivide", star, "-o", obj, "--scheme", "catmark", "--vertex-rule", "older"},
@@ -78,7 +78,7 @@ TEST(options, that_would_change_nothing_are_refused) {
            {"bound", star, "--creases", "split"},
            {"bound", star, "--scheme", "midedge", "--boundary", "none"},
            {"render", star, "-o", png, "--bounds", "table"},
-           {"render", star, "-o", png, "--budget", "9"},
+           {"render", star, "-o", png, "--max-splits", "9"},
            {"render", star, "-o", png, "--nearest-rigid"},
            {"collide", star, star, "--volume", "obb"},
            {"collide", star, star, "--nearest-rigid"},
@@ -91,6 +91,26 @@ TEST(options, that_would_change_nothing_are_refused) {
     EXPECT_EQ(outcome.out, "");
   }
   EXPECT_TRUE(folder.empty());
+}
+
+TEST(old_names, work_for_a_version_with_a_note) {
+  const std::string pin = model("pin.obj");
+  using Words = std::vector<std::string>;
+  for (const auto& [before, now, note] : std::vector<std::tuple<Words, Words, std::string>>{
+           {{"bound", pin, "--tolerance", "5%"},
+            {"bound", pin, "--error", "5%"},
+            "--tolerance is now --error"},
+           {{"bound", pin, "--budget=9"}, {"bound", pin, "--max-splits=9"}, "--budget is now --max-splits"},
+           {{"self", pin}, {"self-contact", pin}, "self is now self-contact"}}) {
+    Words old_words = before, words = now;
+    old_words.emplace_back("--json");
+    words.emplace_back("--json");
+    EXPECT_EQ(comparable(old_words), comparable(words)) << note;
+    EXPECT_NE(run_snug(old_words).err.find("note: " + note), std::string::npos) << note;
+    old_words.emplace_back("--quiet");
+    EXPECT_EQ(run_snug(old_words).err, "") << note;
+  }
+  EXPECT_EQ(run_snug({"bound", pin, "--error", "5%", "--tolerance", "5%"}).status, 2);
 }
 
 TEST(placements, that_are_not_rigid_are_refused) {

@@ -107,9 +107,9 @@ for c in 'ce':
     rows = d['results' if c == 'c' else 'points']
     assert len(a) == len(rows) > 0
     for i, r in enumerate(rows):
-        p = r['point' if c == 'c' else 'position']
+        p = r['point']
         assert [a['x'][i], a['y'][i], a['z'][i], a['error'][i], a['u'][i], a['v'][i], a['face'][i]] == p + [r['error'], r['u'], r['v'], r['face']]
-        if c == 'c': assert [a['distance_lower'][i], a['distance_upper'][i]] == r['distance'] and a['reached'][i] == r['reached']
+        if c == 'c': assert [a['distance_lower'][i], a['distance_upper'][i]] == r['distance'] and a['complete'][i] == (r['outcome'] == 'complete')
         else:
             assert [a['du_x'][i], a['dv_z'][i]] == [r['tangents'][0][0], r['tangents'][1][2]]
             assert (r['normal'] is None and n.isnan(a['normal_x'][i])) or a['normal_y'][i] == r['normal'][1]
@@ -129,7 +129,7 @@ TEST(points, tables_have_the_columns_of_what_was_asked) {
   };
   EXPECT_EQ(head({"closest", model("star.obj"), "--points", folder.file("p.txt"), "--scheme", "catmark",
                   "--signed"}),
-            "x,y,z,error,distance_lower,distance_upper,signed_lower,signed_upper,face,corner,u,v,reached");
+            "x,y,z,error,distance_lower,distance_upper,signed_lower,signed_upper,face,corner,u,v,complete");
   put(folder.file("l.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nl 1 2 3 4\n");
   EXPECT_EQ(head({"eval", folder.file("l.obj")}), "edge,t,x,y,z,error,tangent_x,tangent_y,tangent_z");
 }

@@ -198,7 +198,7 @@ TEST_F(pose_files, are_answered_as_single_poses_for_any_number_of_threads) {
       const auto text = [&](const char* key) { return text_of(one[key].get<std::array<double, 12>>()); };
       const json alone = answer(command, {"--place-a", text("place_a"), "--place-b", text("place_b")});
       for (const char* key :
-           {"verdict", "reached", "distance", "witness", "witness_error", "stats", "place_a", "place_b"})
+           {"verdict", "outcome", "distance", "witness", "witness_error", "stats", "place_a", "place_b"})
         EXPECT_EQ(alone.value(key, json()), one.value(key, json())) << key << ' ' << i;
     }
   }
@@ -301,10 +301,11 @@ TEST_F(pose_files, off_from_rigid_are_mended_on_request_with_one_note) {
 }
 
 TEST_F(pose_files, end_with_5_if_one_answer_was_not_reached) {
-  const Outcome outcome = run("distance", {"--poses", "-", "--budget", "0", "--precision", "1e-9", "--json"},
-                              "1 0 0 3 0 1 0 0 0 0 1 0\n");
+  const Outcome outcome =
+      run("distance", {"--poses", "-", "--max-splits", "0", "--absolute", "1e-9", "--json"},
+          "1 0 0 3 0 1 0 0 0 0 1 0\n");
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_EQ(json::parse(outcome.out)["results"][0]["reached"], false);
+  EXPECT_EQ(json::parse(outcome.out)["results"][0]["outcome"], "budget-spent");
 }
 
 TEST_F(pose_files, longer_than_the_buffer_are_answered_in_order) {

@@ -100,10 +100,11 @@ TEST_F(queries, tolerance_zero_proves_separation_and_contact) {
       run_snug({"collide", ball, ball, "--tolerance", "0", "--place-b", moved(0.3), "--exit-code"}).status,
       11);
   // The same surface twice has contact that no crossing shows.
-  const json same = answer({"collide", ball, ball, "--tolerance", "0", "--budget", "2000"}, 5);
+  const json same = answer({"collide", ball, ball, "--tolerance", "0", "--max-splits", "2000"}, 5);
   EXPECT_EQ(same["verdict"], "undecided");
-  EXPECT_EQ(run_snug({"collide", ball, ball, "--tolerance", "0", "--budget", "2000", "--exit-code"}).status,
-            12);
+  EXPECT_EQ(
+      run_snug({"collide", ball, ball, "--tolerance", "0", "--max-splits", "2000", "--exit-code"}).status,
+      12);
   for (const char* tolerance : {"-1", "nan", "inf", "1e999", ""})
     EXPECT_EQ(run_snug({"collide", ball, ball, "--tolerance", tolerance}).status, 2) << tolerance;
 }
@@ -176,7 +177,7 @@ TEST_F(queries, distances_do_not_depend_on_the_unit) {
     const double unit = std::ldexp(1.0, exponent);
     const std::string ball = write("ball.obj", octahedron(unit, unit, unit)),
                       points = write("points.txt", number(3 * unit) + " 0 0\n");
-    const std::vector<std::string> precise{"--precision", number(1e-6 * unit)};
+    const std::vector<std::string> precise{"--absolute", number(1e-6 * unit)};
     std::vector<std::string> apart{"distance", ball, ball, "--place-b", moved(3 * unit)};
     apart.insert(apart.end(), precise.begin(), precise.end());
     const json found = answer(apart);
@@ -199,9 +200,9 @@ TEST_F(queries, distance_and_closest_refuse_bad_input_and_leave_no_file) {
   for (const auto& [placement, status] :
        {std::pair{"1 0 0 0 0 1 0 0 0 0 1.00000001 0", 4}, std::pair{"nan 0 0 0 0 1 0 0 0 0 1 0", 2}})
     EXPECT_EQ(run_snug({"distance", star, star, "--place-b", placement, "-o", file}).status, status);
-  EXPECT_EQ(run_snug({"distance", star, star, "--precision", "-1", "-o", file}).status, 2);
+  EXPECT_EQ(run_snug({"distance", star, star, "--absolute", "-1", "-o", file}).status, 2);
   // The same surface twice: its distance is 0, but no proof ends at that.
-  EXPECT_EQ(run_snug({"distance", star, star, "--precision", "0", "--budget", "200"}).status, 5);
+  EXPECT_EQ(run_snug({"distance", star, star, "--absolute", "0", "--max-splits", "200"}).status, 5);
   for (const char* line : {"1 2", "1 2 3 4", "nan 0 0", "1 2 x", "1e999 0 0"}) {
     const Outcome outcome = run_snug(
         {"closest", star, "--points", write("bad.txt", std::string("0 0 0\n") + line + "\n"), "-o", file});
@@ -267,7 +268,7 @@ TEST_F(queries, surfaces_at_any_distance_are_separated_at_once) {
 TEST_F(queries, interruption_leaves_no_file) {
   const TemporaryFolder out;
   const Outcome outcome =
-      interrupt_snug({"collide", model("bust.obj"), model("bust.obj"), "--tolerance", "0", "--budget",
+      interrupt_snug({"collide", model("bust.obj"), model("bust.obj"), "--tolerance", "0", "--max-splits",
                       "1000000000000", "--quiet", "-o", out.file("answer.json")},
                      200);
   // Either it was still at work, or it had given up: nothing half written in any case.

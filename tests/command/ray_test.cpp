@@ -50,11 +50,11 @@ TEST_F(ray_command, tells_the_hits_of_each_line) {
   EXPECT_GE(hit["t"][1], 5.0);
   EXPECT_EQ(hit["certified"], true);
   EXPECT_EQ(hit["side"], -1);
-  EXPECT_NEAR(hit["position"][2].get<double>(), 4, 1e-5);
+  EXPECT_NEAR(hit["point"][2].get<double>(), 4, 1e-5);
   EXPECT_NEAR(hit["normal"][2].get<double>(), 1, 1e-12);
   EXPECT_EQ(hit["face"], 1);
   EXPECT_EQ(nearest[1]["hits"].size(), 0);
-  EXPECT_EQ(nearest[1]["complete"], true);
+  EXPECT_EQ(nearest[1]["outcome"], "complete");
   EXPECT_GE(nearest[2]["hits"][0]["t"][1], 4.5);
   EXPECT_EQ(answer(rays, {"--all"})[0]["hits"].size(), 2);
   EXPECT_EQ(answer(rays, {"--any"})[0]["hits"].size(), 1);
@@ -70,21 +70,21 @@ TEST_F(ray_command, reaches_the_precision_or_ends_with_5) {
   const std::string saddle = write("saddle.obj", "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n");
   const auto ask = [&](const char* precision, const char* query) {
     return run_snug({"ray", saddle, "--scheme", "bilinear", "--rays", write("down.txt", "0.5 0.5 3 0 0 -1\n"),
-                     "--json", "--precision", precision, query});
+                     "--json", "--absolute", precision, query});
   };
   const Outcome fine = ask("1e-6", "--all");
   EXPECT_EQ(fine.status, 0) << fine.err;
-  const json hit = json::parse(fine.out, nullptr, false)["results"][0]["hits"][0];
-  EXPECT_EQ(hit["reached"], true);
+  const json found = json::parse(fine.out, nullptr, false)["results"][0], hit = found["hits"][0];
+  EXPECT_EQ(found["outcome"], "complete");
   EXPECT_LE(hit["t"][0], 2.75);
   EXPECT_GE(hit["t"][1], 2.75);
   EXPECT_LE(hit["t"][1].get<double>() - hit["t"][0].get<double>(), 1.0000001e-6);
   // Below rounding: certain, but not reached.
   const Outcome finer = ask("1e-18", "--all");
   EXPECT_EQ(finer.status, 5) << finer.err;
-  const json wide = json::parse(finer.out, nullptr, false)["results"][0]["hits"][0];
-  EXPECT_EQ(wide["certified"], true);
-  EXPECT_EQ(wide["reached"], false);
+  const json wide = json::parse(finer.out, nullptr, false)["results"][0];
+  EXPECT_EQ(wide["hits"][0]["certified"], true);
+  EXPECT_EQ(wide["outcome"], "at-rounding");
   EXPECT_EQ(ask("1e-18", "--any").status, 0);
 }
 

@@ -142,7 +142,7 @@ TEST_F(ranks, keep_what_a_rank_found_of_its_share) {
   for (int i = 0; i < 640; ++i) scene["pairs"].push_back({2 * i, 2 * i + 1});
   const std::string journal = folder_.file("journal"),
                     words = "collide --scene " + write_scene(folder_.file("slow.json"), scene) +
-                            " --budget 60000 --threads 1 --resume " + journal;
+                            " --max-splits 60000 --threads 1 --resume " + journal;
   const Outcome outcome = shell(with_rank(1, send_when(journal, 7, "KILL") + " true", words) + " 2>&1");
   ASSERT_EQ(outcome.status, 128 + SIGKILL) << outcome.out;
   std::ifstream stream(journal);

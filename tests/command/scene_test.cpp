@@ -335,7 +335,7 @@ TEST_F(journals, of_other_questions_are_refused) {
     EXPECT_NE(outcome.err.find("another scene"), std::string::npos) << outcome.err;
   };
   const std::string before = text();
-  refused(words({"--budget", "7"}));
+  refused(words({"--max-splits", "7"}));
   refused(words({"--boundary", "edge-only"}));
   refused({"distance", "--scene", file_, "--limit", "1", "--resume", journal_});
   write_scene(file_, random_scene(40, 5, 9));

@@ -24,7 +24,7 @@ class self_command : public ::testing::Test {
  protected:
   Outcome run(const std::string& obj, std::vector<std::string> more = {}) {
     std::ofstream(folder_.file("mesh.obj")) << obj;
-    more.insert(more.begin(), {"self", folder_.file("mesh.obj")});
+    more.insert(more.begin(), {"self-contact", folder_.file("mesh.obj")});
     return run_snug(more);
   }
   TemporaryFolder folder_;
@@ -34,7 +34,7 @@ TEST_F(self_command, of_a_box_is_clear) {
   const Outcome outcome = run(box, {"--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json found = json::parse(outcome.out);
-  EXPECT_EQ(found["command"], "self");
+  EXPECT_EQ(found["command"], "self-contact");
   EXPECT_EQ(found["verdict"], "clear");
   EXPECT_TRUE(found["pairs"].empty());
   EXPECT_GT(found["stats"]["stars"], 0);
@@ -63,7 +63,7 @@ TEST_F(self_command, of_two_boxes_beside_each_other_tells_whether_they_are_near)
       "v 2.5 0 0\nv 4.5 0 0\nv 2.5 3 0\nv 4.5 3 0\nv 2.5 0 4\nv 4.5 0 4\nv 2.5 3 4\nv 4.5 3 4\n"
       "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
   const auto found = [&](const char* tolerance) {
-    const Outcome outcome = run(boxes, {"--scheme", "bilinear", "--tolerance", tolerance, "--json"});
+    const Outcome outcome = run(boxes, {"--scheme", "bilinear", "--within", tolerance, "--json"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out);
   };
@@ -75,20 +75,20 @@ TEST_F(self_command, of_two_boxes_beside_each_other_tells_whether_they_are_near)
   EXPECT_EQ(near["pairs"][0]["verdict"], "near");
   EXPECT_LE(near["pairs"][0]["distance"][0], 0.5);
   EXPECT_LE(near["pairs"][0]["distance"][1], 0.6);
-  EXPECT_NE(run(boxes, {"--scheme", "bilinear", "--tolerance", "0.6"}).out.find("apart"), std::string::npos);
+  EXPECT_NE(run(boxes, {"--scheme", "bilinear", "--within", "0.6"}).out.find("apart"), std::string::npos);
 }
 
 TEST_F(self_command, refuses_lengths_that_make_no_sense) {
-  EXPECT_EQ(run(box, {"--tolerance", "-1"}).status, 2);
-  EXPECT_EQ(run(box, {"--tolerance", "nan"}).status, 2);
+  EXPECT_EQ(run(box, {"--within", "-1"}).status, 2);
+  EXPECT_EQ(run(box, {"--within", "nan"}).status, 2);
   EXPECT_EQ(run(box, {"--radius", "1"}).status, 2);
-  const Outcome short_radius = run(box, {"--tolerance", "0.1", "--radius", "0.1"});
+  const Outcome short_radius = run(box, {"--within", "0.1", "--radius", "0.1"});
   EXPECT_EQ(short_radius.status, 4);
-  EXPECT_NE(short_radius.err.find("twice the tolerance"), std::string::npos) << short_radius.err;
+  EXPECT_NE(short_radius.err.find("twice 'within'"), std::string::npos) << short_radius.err;
 }
 
 TEST_F(self_command, ends_with_five_where_nothing_is_decided) {
-  const Outcome outcome = run(box, {"--json", "--budget", "0"});
+  const Outcome outcome = run(box, {"--json", "--max-splits", "0"});
   EXPECT_EQ(outcome.status, 5);
   EXPECT_EQ(json::parse(outcome.out)["verdict"], "undecided");
 }

@@ -108,10 +108,10 @@ TEST_F(solids, polygons_beside_quads_are_told_from_inside_and_outside) {
     const std::string small = write("small.obj", cube(x, y, z, 0.01));
     const json found = answer({"collide", part, small, "--scheme", "catmark", "--solid", "--tolerance", "0"});
     EXPECT_EQ(found["verdict"], inside != 0 ? "intersecting" : "separated") << x << ' ' << y << ' ' << z;
-    EXPECT_EQ(found["inner"], inside != 0 ? json("b") : json(nullptr));
+    EXPECT_EQ(found["contained"], inside != 0 ? json("b") : json(nullptr));
     const json gap = answer({"distance", small, part, "--scheme", "catmark", "--solid"});
     EXPECT_EQ(gap["distance"][0] == 0, inside != 0);
-    EXPECT_EQ(gap["inner"], inside != 0 ? json("a") : json(nullptr));
+    EXPECT_EQ(gap["contained"], inside != 0 ? json("a") : json(nullptr));
     if (inside != 0) {
       EXPECT_EQ(found["distance"], json({0, 0}));
       EXPECT_EQ(found["witness"][0], found["witness"][1]);
@@ -249,7 +249,7 @@ TEST_F(solids, penetration_says_where_its_precision_was_missed_and_proves_contac
     asked.emplace_back("--json");
     const Outcome outcome = run_snug(asked);
     const json found = json::parse(outcome.out);
-    const bool reached = found["penetration"]["reached"];
+    const bool reached = found["penetration"]["outcome"] == "complete";
     EXPECT_EQ(outcome.status, reached ? 0 : 5) << move;
     EXPECT_EQ(text.status, outcome.status) << move;
     EXPECT_EQ(text.out.find("differ by more than 5 %") == std::string::npos, reached) << text.out;

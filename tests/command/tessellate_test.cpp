@@ -34,8 +34,8 @@ TEST(tessellate, writes_closed_triangles_in_every_format) {
   const TemporaryFolder folder;
   for (const char* const format : {"obj", "off", "ply", "stl"}) {
     const std::string file = folder.file(std::string("pawn.") + format);
-    const auto json = answer({model("pawn.obj"), "--tolerance", "0.03", "-o", file});
-    EXPECT_TRUE(json["reached"]);
+    const auto json = answer({model("pawn.obj"), "--error", "0.03", "-o", file});
+    EXPECT_EQ(json["outcome"], "complete");
     EXPECT_GT(json["error_bound"], 0);
     EXPECT_LE(json["error_bound"], 0.03);
     ReadOptions reading;
@@ -54,7 +54,7 @@ TEST(tessellate, writes_closed_triangles_in_every_format) {
 TEST(tessellate, writes_gltf_with_normals) {
   const TemporaryFolder folder;
   const std::string file = folder.file("pawn.glb");
-  const auto json = answer({model("pawn.obj"), "--tolerance", "1%", "-o", file});
+  const auto json = answer({model("pawn.obj"), "--error", "1%", "-o", file});
   const std::string bytes = read_file(file, {});
   EXPECT_NE(bytes.find("\"NORMAL\":2"), std::string::npos);
   EXPECT_GT(bytes.size(),
@@ -64,8 +64,8 @@ TEST(tessellate, writes_gltf_with_normals) {
 // Floats are off by more than doubles, and the error says so.
 TEST(tessellate, states_the_error_of_floats) {
   const TemporaryFolder folder;
-  const auto doubles = answer({model("pawn.obj"), "--tolerance", "1%", "-o", folder.file("a.ply")}),
-             floats = answer({model("pawn.obj"), "--tolerance", "1%", "-o", folder.file("a.stl")});
+  const auto doubles = answer({model("pawn.obj"), "--error", "1%", "-o", folder.file("a.ply")}),
+             floats = answer({model("pawn.obj"), "--error", "1%", "-o", folder.file("a.stl")});
   EXPECT_GT(floats["position_error"], 1e-9);
   EXPECT_LT(doubles["position_error"], 1e-13);
 }
@@ -87,10 +87,10 @@ TEST(tessellate, coarsens_below_the_number_of_faces) {
   const TemporaryFolder folder;
   const std::string bust = model("bust.obj");
   const std::string file = folder.file("bust.stl");
-  const auto json = answer({bust, "--tolerance", "3%", "--coarsen", "-o", file});
+  const auto json = answer({bust, "--error", "3%", "--coarsen", "-o", file});
   EXPECT_LT(json["triangles"], 400) << "bust has 1398 faces";
   const auto judged =
-      nlohmann::json::parse(run_snug({"deviation", bust, file, "--tolerance", "3%", "--json"}).out);
+      nlohmann::json::parse(run_snug({"deviation", bust, file, "--threshold", "3%", "--json"}).out);
   EXPECT_EQ(judged["verdict"], "within");
   ReadOptions reading;
   reading.weld = [](double) { return 0.0; };
@@ -99,9 +99,9 @@ TEST(tessellate, coarsens_below_the_number_of_faces) {
   const Topology topology(mesh);
   for (std::size_t e = 0; e < topology.edge_count(); ++e) EXPECT_FALSE(topology.ends_fans(EdgeId(e)));
   expect_refused({bust, "--coarsen", "--max-edge", "1%", "-o", folder.file("a.ply")}, 2,
-                 "--coarsen goes with --tolerance");
-  expect_refused({bust, "--coarsen", "--tolerance", "1%", "--max-angle", "9", "-o", folder.file("a.ply")}, 2,
-                 "--coarsen goes with --tolerance");
+                 "--coarsen goes with --error");
+  expect_refused({bust, "--coarsen", "--error", "1%", "--max-angle", "9", "-o", folder.file("a.ply")}, 2,
+                 "--coarsen goes with --error");
 }
 
 TEST(tessellate, holds_numbers_of_triangles_edges_and_angles) {
@@ -109,30 +109,30 @@ TEST(tessellate, holds_numbers_of_triangles_edges_and_angles) {
   const std::string file = folder.file("a.off"), pawn = model("pawn.obj");
   EXPECT_LE(answer({pawn, "--max-triangles", "2000", "-o", file})["triangles"], 2000);
   EXPECT_GT(answer({pawn, "--max-edge", "2%", "-o", file})["triangles"], 5000);
-  EXPECT_GT(answer({pawn, "--tolerance", "1%", "--max-angle", "10", "-o", file})["triangles"],
-            answer({pawn, "--tolerance", "1%", "-o", file})["triangles"]);
-  const auto ended = answer({pawn, "--tolerance", "0.001%", "--budget", "3000", "-o", file}, 5);
-  EXPECT_FALSE(ended["reached"]);
+  EXPECT_GT(answer({pawn, "--error", "1%", "--max-angle", "10", "-o", file})["triangles"],
+            answer({pawn, "--error", "1%", "-o", file})["triangles"]);
+  const auto ended = answer({pawn, "--error", "0.001%", "--max-splits", "3000", "-o", file}, 5);
+  EXPECT_EQ(ended["outcome"], "budget-spent");
   EXPECT_LE(ended["triangles"], 3000);
 }
 
 TEST(tessellate, does_not_depend_on_threads) {
   const TemporaryFolder folder;
   const std::string one = folder.file("one.ply"), three = folder.file("three.ply");
-  answer({model("ring.obj"), "--tolerance", "0.1%", "-o", one, "--threads", "1"});
-  answer({model("ring.obj"), "--tolerance", "0.1%", "-o", three, "--threads", "3"});
+  answer({model("ring.obj"), "--error", "0.1%", "-o", one, "--threads", "1"});
+  answer({model("ring.obj"), "--error", "0.1%", "-o", three, "--threads", "3"});
   EXPECT_EQ(read_file(one, {}), read_file(three, {}));
 }
 
 TEST(tessellate, says_what_is_wrong) {
   const TemporaryFolder folder;
   const std::string file = folder.file("a.off"), pawn = model("pawn.obj");
-  expect_refused({pawn, "--tolerance", "1%"}, 2, "-o FILE is missing");
-  expect_refused({pawn, "-o", file}, 2, "--tolerance");
-  expect_refused({pawn, "--tolerance", "-1", "-o", file}, 2, "--tolerance");
-  expect_refused({pawn, "--tolerance", "1%", "-o", folder.file("a.txt")}, 3, "written to");
-  expect_refused({pawn, "--tolerance", "1e-20", "-o", file}, 4, "take ");
-  expect_refused({pawn, "--tolerance", "1e-8", "-o", folder.file("a.stl")}, 4, "single precision");
+  expect_refused({pawn, "--error", "1%"}, 2, "-o FILE is missing");
+  expect_refused({pawn, "-o", file}, 2, "--error");
+  expect_refused({pawn, "--error", "-1", "-o", file}, 2, "--error");
+  expect_refused({pawn, "--error", "1%", "-o", folder.file("a.txt")}, 3, "written to");
+  expect_refused({pawn, "--error", "1e-20", "-o", file}, 4, "take ");
+  expect_refused({pawn, "--error", "1e-8", "-o", folder.file("a.stl")}, 4, "single precision");
   expect_refused({pawn, "--max-triangles", "3", "-o", file}, 4, "take ");
   EXPECT_TRUE(folder.empty());
 }
@@ -140,7 +140,7 @@ TEST(tessellate, says_what_is_wrong) {
 TEST(tessellate, leaves_nothing_after_a_signal) {
   const TemporaryFolder folder;
   const Outcome outcome = interrupt_snug(
-      {"tessellate", model("bust.obj"), "--tolerance", "0.00002%", "-o", folder.file("a.ply")}, 300);
+      {"tessellate", model("bust.obj"), "--error", "0.00002%", "-o", folder.file("a.ply")}, 300);
   EXPECT_EQ(outcome.status, 130) << outcome.err;
   EXPECT_TRUE(folder.empty());
 }

@@ -78,7 +78,7 @@ TEST_P(largest_valence, is_answered_and_the_next_is_refused) {
   const std::vector<std::vector<std::string>> questions{
       {"closest", "--points", points},
       {"ray", "--rays", rays},
-      {"tessellate", "--tolerance", "5%", "-o", folder.file("out.ply")}};
+      {"tessellate", "--error", "5%", "-o", folder.file("out.ply")}};
   for (std::vector<std::string> question : questions) {
     const std::string name = question[0];
     question.insert(question.begin() + 1, "-");

@@ -24,7 +24,7 @@ TEST(bound_counts, are_those_of_bound_for_rows_and_tables) {
   for (const auto& [way, method] :
        {std::pair{BoundWay::rows, BoundMethod::rows}, {BoundWay::ngon, BoundMethod::table}}) {
     for (const std::optional<double> tolerance : {std::optional<double>{}, {0.05}, {0.004}}) {
-      BoundOptions options{.tolerance = tolerance, .level = 2};
+      BoundOptions options{.error = tolerance, .level = 2};
       const BoundSummary expected = bound(
           surface, options, [](const PieceEnclosure&) {}, {}, method);
       const PieceCount found = count_pieces(surface, tables, way, {.tolerance = tolerance, .level = 2});
@@ -35,7 +35,7 @@ TEST(bound_counts, are_those_of_bound_for_rows_and_tables) {
     }
   }
   const CurveSet curves = testing::curve_set(testing::assorted_polylines(3)[2], 3);
-  const BoundSummary expected = bound(curves, {.tolerance = 0.001}, [](const CurveEnclosure&) {});
+  const BoundSummary expected = bound(curves, {.error = 0.001}, [](const CurveEnclosure&) {});
   EXPECT_EQ(count_pieces(curves, BoundWay::rows, {.tolerance = 0.001}).count, expected.count);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 std::uint64_t bound_count(const LimitSurface& surface, BoundMethod method, double tolerance) {
   BoundOptions options;
-  options.tolerance = tolerance;
+  options.error = tolerance;
   return bound(
              surface, options, [](const PieceEnclosure&) {}, {}, method)
       .count;

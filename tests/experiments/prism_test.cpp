@@ -28,7 +28,7 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
     const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
     for (int i = 0; i <= 32; ++i) {
       for (int j = 0; i + j <= 32; ++j) {
-        const LimitPoint at = limit_point(patch, {i / 32.0, j / 32.0});
+        const RelativePoint at = limit_point(patch, {i / 32.0, j / 32.0});
         const Point3 p = patch.origin + at.relative;
         worst = std::max(worst, distance_outside(prism, p) / surface.scale().apply(1.0));
         EXPECT_LE(testing::distance_to_triangle(testing::extended(p), offset.base),

@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <numeric>
 
-#include <snug/error.h>
 #include <snug/patch/limit_evaluator.h>
 #include <snug/query/subdivide.h>
+#include <snug/run.h>
 #include <snug/scheme/rules.h>
 #include <snug/surface/limit_surface.h>
 
@@ -416,7 +416,7 @@ std::size_t rank_of_regular_patch(const ClosedMesh& torus, Scheme scheme, std::s
   const LimitSurface surface(testing::control_mesh_of(torus, random), {.scheme = scheme},
                              std::make_shared<BoundsCache>());
   const PatchId p(0);
-  std::vector<SurfaceParameter> at;
+  std::vector<Place> at;
   for (int j = 0; j <= 8; ++j) {
     for (int i = 0; i + (surface.rules().triangular() ? j : 0) <= 8; ++i)
       at.push_back({0, 0, i / 8.0, j / 8.0});

@@ -16,13 +16,13 @@
 #include <numeric>
 #include <optional>
 
-#include <snug/error.h>
 #include <snug/independence/exact_step.h>
 #include <snug/independence/exact_surface.h>
 #include <snug/independence/flint_memory.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/independence/zero_proof.h>
 #include <snug/mesh/topology.h>
+#include <snug/run.h>
 #include <snug/scheme/refine.h>
 
 // Ranks by elimination against the theorem where it holds, and against ranks of sampled limits, which share nothing with the

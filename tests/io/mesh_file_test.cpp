@@ -123,8 +123,7 @@ TEST(mesh_file, welds_every_format_and_says_what) {
                                             seen = size;
                                             return 1e-6 * size;
                                           },
-                                      .notes = [&](const std::string& line) { notes.push_back(line); },
-                                      .monitor = {}});
+                                      .notes = [&](const std::string& line) { notes.push_back(line); }});
     EXPECT_EQ(seen, 1) << name;
     EXPECT_EQ(welded.vertex_count(), 4u) << name;
     EXPECT_EQ(testing::corners(welded, 1), (std::vector<std::uint32_t>{2, 1, 3})) << name;
@@ -137,8 +136,7 @@ TEST(mesh_file, says_which_file_cannot_be_welded) {
   const TemporaryFolder folder;
   write_mesh(creased_triangle(), folder.file("a.obj"));
   try {
-    static_cast<void>(
-        read_mesh(folder.file("a.obj"), {.weld = [](double) { return 1e-300; }, .notes = {}, .monitor = {}}));
+    static_cast<void>(read_mesh(folder.file("a.obj"), {.weld = [](double) { return 1e-300; }, .notes = {}}));
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_EQ(error.problem(), InputProblem::refused);

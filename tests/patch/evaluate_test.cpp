@@ -31,7 +31,7 @@ class Patches {
 
 BoundedPoint evaluated(LimitEvaluator& evaluator, double u, double v) {
   std::array<BoundedPoint, 1> point;
-  evaluator.points(std::array{SurfaceParameter{0, 0, u, v}}, point);
+  evaluator.points(std::array{Place{0, 0, u, v}}, point);
   return point[0];
 }
 
@@ -39,12 +39,12 @@ void expect_sample(const Patch& patch, const oracle::LimitSample& s) {
   const double coordinate_rounding = 1.2e-16 * (max_abs(patch.origin - Point3{}) + patch.largest);
   const std::string where =
       "face " + std::to_string(s.face) + " at " + std::to_string(s.u) + ", " + std::to_string(s.v);
-  const LimitPoint point = limit_point(patch, {s.u, s.v});
+  const RelativePoint point = limit_point(patch, {s.u, s.v});
   LimitEvaluator evaluator(patch);
   const BoundedPoint kept = evaluated(evaluator, s.u, s.v);
   const LimitFrame frame = evaluator.frame({0, 0, s.u, s.v});
   for (std::size_t k = 0; k < 3; ++k) {
-    for (const LimitPoint& relative : {point, frame.point}) {
+    for (const RelativePoint& relative : {point, frame.point}) {
       EXPECT_NEAR(patch.origin[k] + relative.relative[k], s.position[k],
                   relative.error + s.error + coordinate_rounding)
           << where;
@@ -99,7 +99,7 @@ TEST(limit_evaluator, answers_alike_whatever_it_met_before) {
     Patches patches(twin);
     const Patch patch = patches[random() % twin.triangles.size()];
     reused.reset(patch);
-    std::vector<SurfaceParameter> at;
+    std::vector<Place> at;
     const auto add = [&](double u, double v) { at.push_back({0, 0, u, v}); };
     for (const auto& [u, v] :
          {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.5, 0.5}, {0x1p-70, 0.0}, {0.0, 0x1p-30}}) {
@@ -136,8 +136,8 @@ TEST(limit_point, does_not_leave_the_triangle_where_a_sum_rounds_to_one) {
     for (std::size_t f = 0; f < 3; ++f) {
       const Patch patch = patches[f];
       for (const TriangleParameter at : {TriangleParameter{9e-17, 1}, {1, 9e-17}, {0.75, 0.25 + 0x1p-54}}) {
-        const LimitPoint point = limit_point(patch, at);
-        const LimitPoint meant = limit_point(
+        const RelativePoint point = limit_point(patch, at);
+        const RelativePoint meant = limit_point(
             patch, at.u >= 0.5 ? TriangleParameter{at.u, 1 - at.u} : TriangleParameter{1 - at.v, at.v});
         EXPECT_EQ(point.relative, meant.relative) << n << " face " << f << " at " << at.u << ", " << at.v;
       }

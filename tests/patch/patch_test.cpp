@@ -38,7 +38,8 @@ TEST(split, keeps_the_limit_surface) {
       for (int level = 0; level < 6; ++level) {
         piece = split(piece, static_cast<unsigned>(random() % 4));
         for (const TriangleParameter at : {TriangleParameter{0, 0}, {1, 0}, {0, 1}, {0.25, 0.5}}) {
-          const LimitPoint own = limit_point(piece, at), root = limit_point(whole, to_face(piece.path, at));
+          const RelativePoint own = limit_point(piece, at),
+                              root = limit_point(whole, to_face(piece.path, at));
           for (std::size_t k = 0; k < 3; ++k) {
             EXPECT_NEAR(own.relative[k], root.relative[k], own.error + root.error)
                 << f << " " << piece.path.text();
@@ -73,7 +74,7 @@ TEST(patch_error, covers_points_that_are_off_through_splits_and_evaluation) {
       }
       for (int level = 0; level < 8; ++level) {
         for (const TriangleParameter at : {TriangleParameter{0, 0}, {1, 0}, {0, 1}, {0.3, 0.4}}) {
-          const LimitPoint a = limit_point(exact, at), b = limit_point(off, at);
+          const RelativePoint a = limit_point(exact, at), b = limit_point(off, at);
           EXPECT_LE(max_abs(a.relative - b.relative), b.error + a.error);
         }
         const auto child = static_cast<unsigned>(random() % 4);

@@ -49,7 +49,7 @@ TEST(flat, has_fcl_s_verdicts_and_distances) {
     DistanceOptions precision;
     precision.absolute = 1e-9 * size;
     const Distance found = distance(a.at(at_a), b.at(at_b), precision);
-    ASSERT_TRUE(found.reached);
+    ASSERT_EQ(found.outcome, Outcome::complete);
     const bool they_meet = bench::fcl_collide(theirs[0], at_a, theirs[1], at_b);
     if (found.distance.upper > 1e-7 * size ||
         found.distance.upper == 0) {  // else FCL's own rounding may decide

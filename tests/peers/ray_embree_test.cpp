@@ -79,7 +79,7 @@ TEST(rays, first_meet_models_where_embree_does) {
        {"bracket", "bust", "demon", "figure", "head", "pawn", "pin", "ring", "star"}) {
     const Surface surface = load(testing::models_dir() + "/" + name + ".obj");
     const double size = surface.size();
-    const Tessellation t = tessellate(surface, {.tolerance = 2e-4 * size, .normals = false});
+    const Tessellation t = tessellate(surface, {.error = 2e-4 * size, .normals = false});
     const EmbreeTriangles triangles(t);
     Point3 middle{};
     for (const Point3& p : t.positions)
@@ -109,7 +109,7 @@ TEST(rays, first_meet_models_where_embree_does) {
         ++near_silhouettes;
         continue;
       }
-      const RayHits found = trace(surface, {from, direction});
+      const RayHits found = snug::ray(surface, {from, direction});
       if (hit.t == std::numeric_limits<double>::infinity()) {
         ++missed;
         EXPECT_TRUE(found.certain_miss()) << name << ", ray " << i;

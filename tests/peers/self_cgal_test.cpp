@@ -4,7 +4,7 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <gtest/gtest.h>
 #include <testing/tagged.h>
@@ -105,8 +105,8 @@ TEST(self_cgal, sharp_polyhedra_are_judged_as_by_exact_predicates) {
   const auto compare = [&](const oracle::TaggedMesh& mesh, const std::string& name) {
     const std::optional<bool> meets = cgal_meets_itself(mesh);
     if (!meets) return;
-    const SelfContact found =
-        self_contact(Surface(testing::control_mesh(mesh), {.scheme = Scheme::loop}), {.budget = 20'000});
+    const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = Scheme::loop}), {},
+                                           {.max_splits = 20'000});
     ++counts[std::string(name_of(found.verdict)) + (*meets ? ", meets itself" : ", does not")];
     if (*meets) {
       EXPECT_NE(found.verdict, SelfVerdict::clear) << name;

@@ -83,7 +83,7 @@ int brightness(const Image& image, int x, int y) {
 TEST(surfaces_in_pictures, look_like_their_triangles) {
   const Shape shape = box({-0.4, -0.3, -0.5}, {0.4, 0.3, 0.5});
   const Surface surface = surface_of(shape);
-  const RayCaster caster(surface, 1e-5, 1);
+  const RayCaster caster(surface, 1e-5, {.threads = 1});
   for (const double opacity : {1.0, 0.4}) {
     PictureScene by_rays{{{.colour = {0.2, 0.5, 0.8}, .opacity = opacity, .gloss = 0.3}}, {}, {}},
         by_triangles = by_rays;
@@ -104,7 +104,7 @@ TEST(surfaces_in_pictures, are_placed_by_their_similarity) {
   given.faces = shape.faces;
   for (const Point3& p : shape.points) given.points.push_back({3 * p.y + 7, -3 * p.x + 1, 3 * p.z - 2});
   const Surface surface = surface_of(given);
-  const RayCaster caster(surface, 3e-5, 1);
+  const RayCaster caster(surface, 3e-5, {.threads = 1});
   PictureScene by_rays{{{.colour = {0.2, 0.5, 0.8}}}, {}, {}}, by_triangles = by_rays;
   by_rays.surfaces.push_back({&caster,
                               {Vector3{0, 3, 0}, Vector3{-3, 0, 0}, Vector3{0, 0, 3}},
@@ -123,7 +123,7 @@ TEST(surfaces_in_pictures, hide_and_are_hidden_by_triangles) {
   const Camera camera = frame(far.points, {0, 0, -1}, {0, 1, 0}, 1);
   for (const bool near_by_rays : {true, false}) {
     const Surface surface = surface_of(near_by_rays ? near : far);
-    const RayCaster caster(surface, 1e-5, 1);
+    const RayCaster caster(surface, 1e-5, {.threads = 1});
     PictureScene scene{{{.colour = {1, 0, 0}, .lit = false}, {.colour = {0, 1, 0}, .lit = false}}, {}, {}};
     scene.surfaces.push_back(as_it_is(caster));
     add_triangles(scene, near_by_rays ? far : near);
@@ -138,7 +138,7 @@ TEST(surfaces_in_pictures, hide_and_are_hidden_by_triangles) {
 TEST(surfaces_in_pictures, are_cut_and_coloured) {
   const Shape shape = box({-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4});
   const Surface surface = surface_of(shape);
-  const RayCaster caster(surface, 1e-5, 1);
+  const RayCaster caster(surface, 1e-5, {.threads = 1});
   PictureScene scene{{{.colour = {0.2, 0.5, 0.8}, .lit = false}}, {}, {}};
   scene.surfaces.push_back(as_it_is(caster));
   // Green where the surface looks at the camera's side, red inside of the far wall.
@@ -160,7 +160,8 @@ TEST(surfaces_in_pictures, cast_shadows) {
   const Shape floor = box({-0.5, -0.1, -0.5}, {0.5, 0, 0.5}),
               lid = box({-0.15, 0.25, -0.15}, {0.15, 0.3, 0.15});
   const Surface floor_surface = surface_of(floor), lid_surface = surface_of(lid);
-  const RayCaster floor_caster(floor_surface, 1e-5, 1), lid_caster(lid_surface, 1e-5, 1);
+  const RayCaster floor_caster(floor_surface, 1e-5, {.threads = 1}),
+      lid_caster(lid_surface, 1e-5, {.threads = 1});
   PictureScene scene{{{.colour = {0.8, 0.8, 0.8}}}, {}, {}};
   scene.surfaces = {as_it_is(floor_caster), as_it_is(lid_caster)};
   const Camera camera = frame(floor.points, {0, -1, -0.6}, {0, 1, 0}, 1);

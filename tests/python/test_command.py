@@ -36,13 +36,13 @@ def same_pair(document, answer):
     if document["witness"] is None:
         assert np.isnan(answer.points).all()
     else:
-        assert document["witness"] == answer.points.tolist() and document["witness_error"] == answer.point_error
+        assert document["witness"] == answer.points.tolist() and document["witness_error"] == answer.error
         for i, at in enumerate(document["witness_at"]):
             if at is None:
                 assert answer.faces[i] == -1
             else:
                 assert [at.get("face", at.get("vertex")), at["u"], at["v"]] == [answer.faces[i], *answer.parameters[i]]
-    assert (-1 if document["inner"] is None else "ab".index(document["inner"]) if isinstance(document["inner"], str) else document["inner"]) == answer.inner
+    assert (-1 if document["contained"] is None else "ab".index(document["contained"]) if isinstance(document["contained"], str) else document["contained"]) == answer.contained
     assert document["stats"] == answer.stats
 
 
@@ -56,7 +56,7 @@ def test_pairs(names):
         assert document["verdict"] == answer.verdict
         same_pair(document, answer)
         document, answer = output_of("distance", *files, "--place-b", text(pose)), snug.distance(a, b, pose_b=pose)
-        assert document["reached"] == answer.reached
+        assert document["outcome"] == answer.outcome
         same_pair(document, answer)
     many = snug.collide(a, b, pose_b=POSES)
     for i, pose in enumerate(POSES):
@@ -68,7 +68,7 @@ def test_solids_and_options():
     a, b = map(snug.read, files)
     document = output_of("collide", *files, "--place-b", text(moved(0, 0, 0.5)), "--solid", "--margin", "1%", "--tolerance", "0.01")
     same_pair(document, snug.collide(a, b, pose_b=moved(0, 0, 0.5), solid=True, margin="1%", tolerance=0.01))
-    document = output_of("distance", *files, "--precision", "0", "--relative", "1e-6")
+    document = output_of("distance", *files, "--absolute", "0", "--relative", "1e-6")
     same_pair(document, snug.distance(a, b, relative=1e-6))
 
 
@@ -89,12 +89,12 @@ def test_one_surface(name, scheme, tmp_path):
     document = output_of("measure", file, "--scheme", scheme)
     assert [document["area"], document["volume"]] == [list(measures.area), list(measures.volume)]
     assert [document["centroid"], document["inertia"]] == [measures.centroid.tolist(), measures.inertia.tolist()]
-    pieces = output_of("bound", file, "--tolerance", "5%", "--scheme", scheme)["enclosures"]
-    bound = surface.bound(tolerance="5%")
+    pieces = output_of("bound", file, "--error", "5%", "--scheme", scheme)["enclosures"]
+    bound = surface.bound(error="5%")
     for key in ("piece", "level", "lower", "upper", "base", "radius", "corners"):
         assert [p[key] for p in pieces] == np.asarray(getattr(bound, "pieces" if key == "piece" else key)).tolist()
     rays = "".join(" ".join(map(repr, p)) + " 0.1 0.2 -1\n" for p in points.tolist())
-    hits = surface.cast_rays(points, [0.1, 0.2, -1], query="all")
+    hits = surface.ray(points, [0.1, 0.2, -1], query="all")
     flat = [hit for r in output_of("ray", file, "--rays", "-", "--all", "--scheme", scheme, stdin=rays)["results"] for hit in r["hits"]]
     assert [h["t"] for h in flat] == np.column_stack([hits.lower, hits.upper]).tolist()
     assert [h["side"] for h in flat] == hits.side.tolist()

@@ -62,8 +62,8 @@ SOLID = snug.Surface(CUBE, CUBE_FACES)
 
 @given(anything)
 def test_points(given_points):
-    near = attempt(lambda: SOLID.closest_point(given_points, budget=100))
-    attempt(lambda: SOLID.signed_distance(given_points, budget=100))
+    near = attempt(lambda: SOLID.closest_point(given_points, max_splits=100))
+    attempt(lambda: SOLID.signed_distance(given_points, max_splits=100))
     attempt(lambda: SOLID.contains(given_points))
     if near is not None:
         assert not np.isnan(near.lower).any() and (np.asarray(near.lower) <= near.upper).all()
@@ -72,15 +72,15 @@ def test_points(given_points):
 @given(anything, anything)
 def test_poses(a, b):
     for rigid in (None, "nearest"):
-        hit = attempt(lambda: snug.collide(SOLID, SOLID, pose_a=a, pose_b=b, rigid=rigid, budget=100))
-        attempt(lambda: snug.distance(SOLID, SOLID, pose_a=a, pose_b=(a, b), rigid=rigid, budget=100))
+        hit = attempt(lambda: snug.collide(SOLID, SOLID, pose_a=a, pose_b=b, rigid=rigid, max_splits=100))
+        attempt(lambda: snug.distance(SOLID, SOLID, pose_a=a, pose_b=(a, b), rigid=rigid, max_splits=100))
         if hit is not None:
             assert (np.asarray(hit.lower) <= hit.upper).all()
 
 
 @given(anything, anything, st.sampled_from(["nearest", "any", "all"]), st.booleans())
 def test_rays(origins, directions, query, certified):
-    attempt(lambda: SOLID.cast_rays(origins, directions, query=query, certified=certified, budget=100))
+    attempt(lambda: SOLID.ray(origins, directions, query=query, certified=certified, max_splits=100))
 
 
 @given(anything, anything, anything, anything)
@@ -100,9 +100,9 @@ def test_meshes(vertices, faces, creases, corners, holes):
     ):
         made = attempt(work)
         if made is not None:
-            attempt(lambda: made.measure(budget=100))
+            attempt(lambda: made.measure(max_splits=100))
             attempt(lambda: made.bound(level=1))
-            attempt(lambda: snug.collide(made, SOLID, budget=100))
+            attempt(lambda: snug.collide(made, SOLID, max_splits=100))
 
 
 @given(
@@ -118,23 +118,23 @@ def test_random_meshes(faces, vertices, scheme, sharp, weld):
         return
     attempt(lambda: made.boxes())
     attempt(lambda: made.subdivided(1, limit=True))
-    attempt(lambda: made.tessellate("20%", budget=1000))
+    attempt(lambda: made.tessellate("20%", max_splits=1000))
     attempt(lambda: made.update(vertices[::-1]))
-    near = attempt(lambda: made.closest_point([0.5, 0.25, 0.125], budget=200))
+    near = attempt(lambda: made.closest_point([0.5, 0.25, 0.125], max_splits=200))
     if near is not None:
         assert near.lower <= near.upper
 
 
 @given(anything, anything, anything)
 def test_options(a, b, c):
-    attempt(lambda: snug.collide(SOLID, SOLID, pose_b=moved(3), tolerance=a, margin=b, budget=c))
+    attempt(lambda: snug.collide(SOLID, SOLID, pose_b=moved(3), tolerance=a, margin=b, max_splits=c))
     attempt(lambda: snug.collide(SOLID, SOLID, pose_b=[moved(3)], threads=a, witness=b, rigid=c))
-    attempt(lambda: snug.distance(SOLID, SOLID, pose_b=moved(3), relative=a, absolute=b, budget=500))
-    attempt(lambda: SOLID.bound(tolerance=a, level=2, budget=100))
-    attempt(lambda: SOLID.bound(level=a, budget=100))
-    attempt(lambda: SOLID.tessellate(a, max_edge=b, view=(b, c), max_triangles=c, budget=1000))
-    attempt(lambda: SOLID.hull(a, budget=100))
-    attempt(lambda: snug.deviation(SOLID, a, budget=100))
+    attempt(lambda: snug.distance(SOLID, SOLID, pose_b=moved(3), relative=a, absolute=b, max_splits=500))
+    attempt(lambda: SOLID.bound(error=a, level=2, max_splits=100))
+    attempt(lambda: SOLID.bound(level=a, max_splits=100))
+    attempt(lambda: SOLID.tessellate(a, max_edge=b, view=(b, c), max_triangles=c, max_splits=1000))
+    attempt(lambda: SOLID.hull(a, max_splits=100))
+    attempt(lambda: snug.deviation(SOLID, a, max_splits=100))
     attempt(lambda: SOLID.update(a))
     attempt(lambda: snug.Surface(CUBE, CUBE_FACES, scheme=a, boundary=b, crease_method=c))
     attempt(lambda: snug.Surface(CUBE, CUBE_FACES, sharp=a, weld=b, smooth_triangles=c))

@@ -39,7 +39,7 @@ def test_updates_while_others_ask(cube):
     def ask():
         try:
             while not done.is_set():
-                hits = cube.cast_rays([[0, 0, 9]] * 5, [0, 0, -1], certified=False).t
+                hits = cube.ray([[0, 0, 9]] * 5, [0, 0, -1], certified=False).t
                 near = cube.closest_point(np.zeros((50, 3))).lower
                 if len(set(hits)) != 1 or len(set(near)) != 1:
                     faults.append((hits, near))
@@ -72,7 +72,7 @@ def test_progress(cube):
     many = np.zeros(300_000)
     for work in (
         lambda progress: cube.evaluate(np.zeros(len(many), int), many, many, progress=progress),
-        lambda progress: cube.cast_rays(np.full((len(many), 3), 9.0), [0, 0, -1], certified=False, progress=progress),
+        lambda progress: cube.ray(np.full((len(many), 3), 9.0), [0, 0, -1], certified=False, progress=progress),
         lambda progress: cube.contains(np.full((len(many), 3), [0.3, 0.2, 0.1]), progress=progress),
     ):
         seen.clear()
@@ -92,7 +92,7 @@ LONG = """
     {handler}
     begin = time.monotonic()
     try:
-        surface.tessellate("0.00001%", budget=10**9)
+        surface.tessellate("0.00001%", max_splits=10**9)
     except KeyboardInterrupt:
         print("interrupted", flush=True)
     except {error} as error:

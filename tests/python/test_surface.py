@@ -101,9 +101,9 @@ def test_update(cube):
         np.testing.assert_array_equal(other.vertices, points)
     assert copied.closest_point([9, 0, 0]).lower == far.lower
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(cube)).vertices, CUBE * 2)
-    quick = cube.cast_rays([0, 0, 9], [0, 0, -1], certified=False, tolerance=1e-3).t
+    quick = cube.ray([0, 0, 9], [0, 0, -1], certified=False, error=1e-3).t
     cube.update(CUBE)
-    assert cube.cast_rays([0, 0, 9], [0, 0, -1], certified=False, tolerance=1e-3).t > quick + 0.5
+    assert cube.ray([0, 0, 9], [0, 0, -1], certified=False, error=1e-3).t > quick + 0.5
     for wrong in (CUBE[:-1], CUBE * np.nan):
         with pytest.raises(ValueError):
             cube.update(wrong)
@@ -155,13 +155,13 @@ def every_answer(cube):
     one, many = [0.25, 0.5, 3.0], [[0.25, 0.5, 3.0], [0, 0, 0.1]]
     hulls = cube.hull("5%")
     answers = [
-        cube.bound(level=1), cube.bound(tolerance="5%"), cube.tessellate("5%", corners=True), hulls, hulls.inner, cube.hull("5%", inner=False),
+        cube.bound(level=1), cube.bound(error="5%"), cube.tessellate("5%", corners=True), hulls, hulls.inner, cube.hull("5%", inner=False),
         cube.measure(), snug.Surface(CUBE, CUBE_FACES[1:]).measure(), snug.deviation(cube, cube.tessellate("5%"), solid=True),
         snug.deviation(cube, cube).from_surface, cube.evaluate(0, 0.5, 0.5), cube.evaluate([0, 1], 0.25, 0.5),
     ]
     for points in (one, many, np.empty((0, 3))):
         answers += [cube.closest_point(points), cube.signed_distance(points), cube.contains(points)]
-        answers += [cube.cast_rays(points, [0, 0, -1], query="all"), cube.cast_rays(points, [0, 0, -1], certified=False)]
+        answers += [cube.ray(points, [0, 0, -1], query="all"), cube.ray(points, [0, 0, -1], certified=False)]
     return answers
 
 
@@ -171,7 +171,7 @@ MAY_BE_MISSING = {"points", "parameters", "normal"}
 
 def test_arrays_are_read_only_and_made_once(cube):
     cone = snug.Surface([[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]], scheme="flat")
-    answers = every_answer(cube) + [cube, cone, cube.subdivided(1), cone.evaluate(0, 0, 0), cone.cast_rays([0.1, 0.1, 9], [0, 0, -1])]
+    answers = every_answer(cube) + [cube, cone, cube.subdivided(1), cone.evaluate(0, 0, 0), cone.ray([0.1, 0.1, 9], [0, 0, -1])]
     for how in ({"pose_b": moved(9)}, {"pose_b": [moved(9), moved(0.5)]}, {"pose_b": np.empty((0, 4, 4))}):
         answers += [snug.collide(cube, cube, witness=witness, **how) for witness in ("none", "exact")]
         answers += [snug.distance(cube, cube, **how), snug.penetration(cube, cube, **how), snug.collide(cube, cube, solid=True, **how)]
@@ -241,28 +241,28 @@ def test_files(tmp_path, cube):
 
 
 def test_shapes(cube):
-    bound = cube.bound(tolerance="1%")
-    assert bound.reached and bound.max_radius <= 0.005 * cube.size * 1.0001 and len(bound) == len(bound.pieces) == len(bound.radius)
+    bound = cube.bound(error="1%")
+    assert bound.outcome == "complete" and bound.max_radius <= 0.005 * cube.size * 1.0001 and len(bound) == len(bound.pieces) == len(bound.radius)
     assert bound.base.shape == bound.lower.shape == bound.corners.shape == (len(bound), 3, 3)
     assert (bound.lower <= bound.upper).all()
     boxes = cube.boxes()
     assert boxes.shape == (6, 2, 3)
     points = cube.evaluate(np.repeat(np.arange(6), 50), *np.random.default_rng(1).random((2, 300)))
     for own in (boxes[np.repeat(np.arange(6), 50)], cube.boxes(level=3)[np.repeat(np.arange(6), 50)]):
-        assert (own[:, 0] <= points.position).all() and (points.position <= own[:, 1]).all()
+        assert (own[:, 0] <= points.point).all() and (points.point <= own[:, 1]).all()
     mesh = cube.tessellate("1%", corners=True)
-    assert mesh.reached and mesh.error_bound <= 0.01 * cube.size and mesh.faces.max() < len(mesh.vertices)
+    assert mesh.outcome == "complete" and mesh.error_bound <= 0.01 * cube.size and mesh.faces.max() < len(mesh.vertices)
     assert mesh.corner_parameters.shape == (len(mesh.faces), 3, 2) and mesh.normals.shape == mesh.vertices.shape
     assert len(mesh.owners) == len(mesh.corner_corners) == len(mesh.faces)
     deviation = snug.deviation(cube, mesh)
     assert deviation.from_surface.lower <= mesh.error_bound and deviation.inside is None
     assert snug.deviation(cube, cube).from_candidate.lower == 0
     inner, outer = hulls = cube.hull("2%")
-    assert hulls.verified and hulls.closed and hulls.problems == []
+    assert hulls.outcome == "complete" and hulls.closed and hulls.problems == []
     assert cube.signed_distance(inner.vertices).upper.max() < 0 < cube.signed_distance(outer.vertices).lower.min()
     assert cube.hull("2%", inner=False).inner is None
     measures = cube.measure()
-    assert measures.reached and measures.volume[0] <= measures.volume[1] and measures.centroid.shape == (3, 2)
+    assert measures.outcome == "complete" and measures.volume[0] <= measures.volume[1] and measures.centroid.shape == (3, 2)
     assert cube.subdivided(2).faces.shape == (96, 4)
     assert snug.Surface(CUBE, CUBE_FACES[1:]).measure().volume is None
     assert np.isnan(snug.Surface(CUBE, CUBE_FACES, holes=[2]).boxes()[2]).all()

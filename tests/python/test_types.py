@@ -47,7 +47,7 @@ def test_declarations_are_true(tmp_path):
 
 def test_help_shows_names_and_defaults():
     assert str(inspect.signature(snug.Surface)).startswith("(vertices, faces=None, *, scheme='auto', creases=None")
-    assert str(inspect.signature(snug.Surface.hull)).startswith("(self, tolerance, *, inner=True")
+    assert str(inspect.signature(snug.Surface.hull)).startswith("(self, error=None, *, inner=True")
     cube = snug.Surface(CUBE, CUBE_FACES)
     assert str(inspect.signature(cube.contains)) == "(points, *, threads=0, progress=None)"
     assert "tolerance='0.1%'" in pydoc.plain(pydoc.render_doc(snug.collide)) and snug.collide.__doc__.startswith("Do two")

@@ -49,7 +49,7 @@ TEST(bound_curve, of_every_edge_meets_the_tolerance) {
       const CurveSet curves = testing::curve_set(twin, degree);
       for (const double tolerance : {0.1, 1e-3, 1e-6}) {
         BoundOptions how;
-        how.tolerance = tolerance;
+        how.error = tolerance;
         std::vector<double> covered(curves.edge_count(), 0);
         const BoundSummary summary = bound(curves, how, [&](const CurveEnclosure& piece) {
           EXPECT_LE(piece.offset.radius, tolerance / 2);
@@ -57,7 +57,7 @@ TEST(bound_curve, of_every_edge_meets_the_tolerance) {
           EXPECT_EQ(range.first, covered[piece.edge.index()]);
           covered[piece.edge.index()] += range.size;
         });
-        EXPECT_TRUE(summary.reached);
+        EXPECT_EQ(summary.outcome, Outcome::complete);
         EXPECT_LE(summary.max_radius, tolerance / 2);
         for (const double share : covered) EXPECT_EQ(share, 1);
       }
@@ -68,12 +68,12 @@ TEST(bound_curve, of_every_edge_meets_the_tolerance) {
 TEST(bound_curve, that_runs_out_of_budget_still_covers) {
   const CurveSet curves = testing::curve_set(testing::assorted_polylines(3)[5], 3);
   BoundOptions how;
-  how.tolerance = 1e-9;
-  how.budget = 10;
+  how.error = 1e-9;
   double covered = 0;
   const BoundSummary summary =
-      bound(curves, how, [&](const CurveEnclosure& piece) { covered += testing::range_of(piece.path).size; });
-  EXPECT_FALSE(summary.reached);
+      bound(curves, how, [&](const CurveEnclosure& piece) { covered += testing::range_of(piece.path).size; },
+            {.max_splits = 10});
+  EXPECT_EQ(summary.outcome, Outcome::budget_spent);
   EXPECT_EQ(summary.splits, 10u);
   EXPECT_EQ(covered, static_cast<double>(curves.edge_count()));
 }
@@ -84,14 +84,15 @@ TEST(bound_curve, stops_where_rounding_stands_in_the_way) {
     p[0] += 1000;  // sooner there: an edge is bounded as a whole before it is visited
   const CurveSet curves = testing::curve_set(twin, 3);
   BoundOptions how;
-  how.tolerance = 1e-300;
-  how.budget = 1'000'000'000;
+  how.error = 1e-300;
   std::uint64_t deepest = 0, visited = 0;
   const auto stopped = [&] {
-    bound(curves, how, [&](const CurveEnclosure& piece) {
-      deepest = std::max<std::uint64_t>(deepest, piece.path.level());
-      if (++visited > 4'000) throw Interrupted();
-    });
+    bound(curves, how,
+          [&](const CurveEnclosure& piece) {
+            deepest = std::max<std::uint64_t>(deepest, piece.path.level());
+            if (++visited > 4'000) throw Interrupted();
+          },
+          {.max_splits = 1'000'000'000});
   };
   EXPECT_THROW(stopped(), Interrupted);
   EXPECT_LT(deepest, 40u);
@@ -232,7 +233,7 @@ TEST(subdivide_curve, keeps_the_curve) {
       const ControlMesh mesh = testing::control_mesh(std::vector{twin});
       const CurveSet curves(mesh, d);
       BoundOptions how;
-      how.tolerance = 1e-5;
+      how.error = 1e-5;
       std::vector<OffsetSegment> pieces;
       bound(curves, how, [&](const CurveEnclosure& piece) { pieces.push_back(piece.offset); });
       const auto on_curve = [&](const Point3& p) {

@@ -14,10 +14,10 @@ struct Collected {
   BoundSummary summary;
 };
 
-Collected collect(const LimitSurface& surface, const BoundOptions& options) {
+Collected collect(const LimitSurface& surface, const BoundOptions& options, const Run& run = {}) {
   Collected result;
-  result.summary =
-      bound(surface, options, [&](const PieceEnclosure& piece) { result.pieces.push_back(piece); });
+  result.summary = bound(
+      surface, options, [&](const PieceEnclosure& piece) { result.pieces.push_back(piece); }, run);
   return result;
 }
 
@@ -41,28 +41,25 @@ TEST(bound, is_the_same_for_any_number_of_threads) {
   const LimitSurface surface = testing::surface_of(
       oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 20, 0.1, random));
   BoundOptions options;
-  options.tolerance = 0.005;
+  options.error = 0.005;
   options.normals = true;
-  options.threads = 1;
-  const Collected serial = collect(surface, options);
+  const Collected serial = collect(surface, options, {.threads = 1});
   for (const int threads : {0, 2, 4}) {
-    options.threads = threads;
-    EXPECT_TRUE(same(serial, collect(surface, options))) << threads;
+    EXPECT_TRUE(same(serial, collect(surface, options, {.threads = threads}))) << threads;
   }
-  options.budget = serial.summary.splits / 2;
-  const Collected half = collect(surface, options);
-  options.threads = 1;
-  EXPECT_TRUE(same(half, collect(surface, options)));
-  EXPECT_FALSE(half.summary.reached);
-  EXPECT_EQ(half.summary.splits, options.budget);
+  const std::uint64_t budget = serial.summary.splits / 2;
+  const Collected half = collect(surface, options, {.max_splits = budget});
+  EXPECT_TRUE(same(half, collect(surface, options, {.threads = 1, .max_splits = budget})));
+  EXPECT_EQ(half.summary.outcome, Outcome::budget_spent);
+  EXPECT_EQ(half.summary.splits, budget);
 }
 
 TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   BoundOptions options;
-  options.tolerance = 0.01;
+  options.error = 0.01;
   const Collected result = collect(surface, options);
-  EXPECT_TRUE(result.summary.reached);
+  EXPECT_EQ(result.summary.outcome, Outcome::complete);
   EXPECT_LE(result.summary.max_radius, 0.005);
   std::vector<double> area(surface.face_count(), 0);
   for (const PieceEnclosure& piece : result.pieces)
@@ -70,13 +67,14 @@ TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
   for (const double a : area) EXPECT_EQ(a, 1);
 }
 
-TEST(bound, says_so_when_rounding_stops_it) {
-  const LimitSurface surface = testing::surface_of(oracle::meshes::octahedron());
+TEST(bound, says_whether_rounding_or_the_budget_stops_it) {
   BoundOptions options;
-  options.tolerance = 1e-17;
-  options.budget = 20000;
-  const Collected result = collect(surface, options);
-  EXPECT_FALSE(result.summary.reached);
+  options.error = 1e-17;
+  const LimitSurface curved = testing::surface_of(oracle::meshes::octahedron());
+  EXPECT_EQ(collect(curved, options, {.max_splits = 20000}).summary.outcome, Outcome::budget_spent);
+  const LimitSurface flat(testing::control_mesh(oracle::meshes::octahedron()), {Scheme::flat},
+                          std::make_shared<BoundsCache>());
+  EXPECT_EQ(collect(flat, options, {.max_splits = 20000}).summary.outcome, Outcome::at_rounding);
 }
 
 TEST(bound, refuses_results_that_do_not_fit_a_double) {
@@ -95,9 +93,7 @@ TEST(bound, stops_when_asked) {
   const std::atomic<bool> stop{true};
   WorkMonitor monitor;
   monitor.stop = &stop;
-  EXPECT_THROW(bound(
-                   surface, {}, [](const PieceEnclosure&) {}, monitor),
-               Interrupted);
+  EXPECT_THROW(bound(surface, {}, [](const PieceEnclosure&) {}, {.monitor = &monitor}), Interrupted);
 }
 
 }  // namespace

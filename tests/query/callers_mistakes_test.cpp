@@ -69,10 +69,10 @@ TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_i
     bound(surface, options, [](const PieceEnclosure&) {});
   };
   for (const double tolerance : std::vector<double>{NAN, INFINITY, -INFINITY, 0, -1e-300}) {
-    expect_refused("tolerance", [&] { run({.tolerance = tolerance}); });
+    expect_refused("error", [&] { run({.error = tolerance}); });
   }
-  expect_refused("level", [&] { run({.tolerance = {}, .level = 61}); });
-  expect_refused("level", [&] { run({.tolerance = {}, .level = UINT32_MAX}); });
+  expect_refused("level", [&] { run({.error = {}, .level = 61}); });
+  expect_refused("level", [&] { run({.error = {}, .level = UINT32_MAX}); });
 }
 
 TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
@@ -87,10 +87,10 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
     expect_refused("quad v", [&] { static_cast<void>(evaluate(quad, {0, 0, 0, x})); });
     expect_refused("loop u", [&] { static_cast<void>(evaluate(loop, {0, 0, x, 0})); });
     expect_refused("positions on a quad", [&] {
-      SurfaceEvaluator(quad).positions(std::array{SurfaceParameter{0, 0, 0, x}}, points);
+      SurfaceEvaluator(quad).positions(std::array{Place{0, 0, 0, x}}, points);
     });
     expect_refused("evaluator of a triangle", [&] { static_cast<void>(of_loop(TriangleParameter{0, x})); });
-    expect_refused("kept pieces", [&] { kept.points(std::array{SurfaceParameter{0, 0, x, 0}}, points); });
+    expect_refused("kept pieces", [&] { kept.points(std::array{Place{0, 0, x, 0}}, points); });
     expect_refused("patch", [&] {
       static_cast<void>(limit_point(loop.patch(PatchId(0)), TriangleParameter{x, 0}));
     });
@@ -102,7 +102,7 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
   expect_refused("no such patch", [&] { PatchEvaluator(quad, PatchId(7)); });
   std::array<float, 3> one{};
   std::array<float, 6> two{};
-  const std::array<SurfaceParameter, 2> places{};
+  const std::array<Place, 2> places{};
   expect_refused("room for positions", [&] { evaluate(quad, places, {one}, 1); });
   expect_refused("room for normals", [&] { evaluate(quad, places, {two, one}, 1); });
 }
@@ -113,8 +113,8 @@ TEST(callers_mistakes, curves_have_edges_and_parameters) {
   mesh.add_polyline(std::array{VertexId(0), VertexId(1), VertexId(2)});
   const CurveSet curves(std::move(mesh), CurveDegree::cubic);
   const auto run = [&](const BoundOptions& options) { bound(curves, options, [](const CurveEnclosure&) {}); };
-  expect_refused("tolerance", [&] { run({.tolerance = -1}); });
-  expect_refused("level", [&] { run({.tolerance = {}, .level = 61}); });
+  expect_refused("error", [&] { run({.error = -1}); });
+  expect_refused("level", [&] { run({.error = {}, .level = 61}); });
   expect_refused("edge", [&] { static_cast<void>(evaluate(curves, EdgeId(2), 0)); });
   for (const double t : std::vector<double>{NAN, -1e-300, 1 + 0x1p-52}) {
     expect_refused("t", [&] { static_cast<void>(evaluate(curves, EdgeId(0), t)); });
@@ -141,7 +141,7 @@ TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model)
   for (const double x : no_numbers) {
     expect_refused("point", [&] { static_cast<void>(closest_point(at_a, {x, 0, 0}, {})); });
     expect_refused("points", [&] {
-      static_cast<void>(closest_points(a, std::vector<Point3>{{0, 0, x}}, {}, 2));
+      static_cast<void>(closest_point(a, std::vector<Point3>{{0, 0, x}}, {}, {.threads = 2}));
     });
     expect_refused("precision", [&] { static_cast<void>(closest_point(at_a, {}, {.absolute = x})); });
     expect_refused("tolerance", [&] {

@@ -31,8 +31,8 @@ struct Pair {
         model_b(b, {.threads = threads}),
         scratch_a(model_a),
         scratch_b(model_b) {}
-  Collision ask(const Motion& place, const CollideOptions& options) {
-    return collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options);
+  Collision ask(const Motion& place, const CollideOptions& options, const Run& run = {}) {
+    return collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options, run);
   }
 };
 
@@ -53,7 +53,7 @@ TEST(collide, separates_what_is_apart_and_meets_what_overlaps) {
   EXPECT_EQ(touching.verdict, Verdict::within);
   ASSERT_TRUE(touching.witness && std::isfinite(touching.distance.upper));
   EXPECT_LE(touching.distance.upper, 0.01);
-  EXPECT_LE(distance((*touching.witness)[0], (*touching.witness)[1]), 0.01);
+  EXPECT_LE(distance((*touching.witness)[0].point, (*touching.witness)[1].point), 0.01);
 }
 
 // A shell inside a shell: no points in common, however deep.
@@ -89,7 +89,7 @@ TEST(collide, tells_that_patches_meet_with_few_splits) {
     ASSERT_LE(found.distance.upper, 1e-3);
     ++met;
     splits += found.stats.splits;
-    ASSERT_LE(distance((*found.witness)[0], (*found.witness)[1]), 1e-3);
+    ASSERT_LE(distance((*found.witness)[0].point, (*found.witness)[1].point), 1e-3);
   }
   EXPECT_GT(met, 100);
   EXPECT_LT(splits, 3u * static_cast<unsigned>(met));
@@ -119,8 +119,9 @@ TEST(collide, does_not_depend_on_threads_or_earlier_queries) {
 
 TEST(collide, is_undecided_when_the_budget_ends) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
-  const Collision answer = pair.ask(moved(1.2, 0.3, 0.1), testing::verdict_only(1e-12, 0, 3));
+  const Collision answer = pair.ask(moved(1.2, 0.3, 0.1), testing::verdict_only(1e-12, 0), {.max_splits = 3});
   EXPECT_EQ(answer.verdict, Verdict::undecided);
+  EXPECT_EQ(answer.outcome, Outcome::budget_spent);
   EXPECT_EQ(answer.distance.lower, 0);
   EXPECT_LE(answer.stats.splits, 3u);
 }
@@ -212,7 +213,7 @@ TEST(collide, measures_the_gap_if_asked) {
     ASSERT_EQ(answer.verdict, Verdict::separated) << x;
     ASSERT_TRUE(std::isfinite(answer.distance.upper) && answer.witness);
     EXPECT_GE(answer.distance.lower, answer.distance.upper / 2) << x;
-    EXPECT_TRUE(answer.at[0] && answer.at[1]);
+    EXPECT_TRUE((*answer.witness)[0].at && (*answer.witness)[1].at);
   }
 }
 
@@ -238,9 +239,8 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
     for (int exponent = 100; exponent < 150; ++exponent) {
       const Motion place = moved(std::ldexp(1.0, exponent), 0, 0);
       CollideOptions options = testing::verdict_only(0, 0.9 * apart);
-      options.budget = 200;
-      const Collision answer =
-          collide({pair.model_a, pair.scratch_a, place}, {pair.model_b, pair.scratch_b, place}, options);
+      const Collision answer = collide({pair.model_a, pair.scratch_a, place},
+                                       {pair.model_b, pair.scratch_b, place}, options, {.max_splits = 200});
       separated += answer.verdict == Verdict::separated;
       EXPECT_LE(answer.distance.lower, apart) << exponent;
     }
@@ -287,7 +287,7 @@ TEST(collide, proves_contact_at_tolerance_zero) {
 
 TEST(collide, touching_surfaces_stay_undecided_at_tolerance_zero) {
   Pair pair(oracle::meshes::grid(3, 3), oracle::meshes::grid(3, 3));
-  EXPECT_EQ(pair.ask({}, testing::verdict_only(0, 0, 2000)).verdict, Verdict::undecided);
+  EXPECT_EQ(pair.ask({}, testing::verdict_only(0, 0), {.max_splits = 2000}).verdict, Verdict::undecided);
 }
 
 // In one plane but for rounding every pair of triangles looks as if it crossed.
@@ -313,11 +313,12 @@ TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
   options.solid = true;
   const Collision held = nested.ask({}, options);
   EXPECT_EQ(held.verdict, Verdict::intersecting);
-  EXPECT_EQ(held.inner, std::optional<std::size_t>(1));
+  EXPECT_EQ(held.contained, std::optional<std::size_t>(1));
   EXPECT_EQ(held.distance.lower, 0);
   EXPECT_EQ(held.distance.upper, 0);
   ASSERT_TRUE(held.witness);
-  EXPECT_EQ((*held.witness)[0], (*held.witness)[1]);
+  EXPECT_EQ(held.outcome, Outcome::complete);
+  EXPECT_EQ((*held.witness)[0].point, (*held.witness)[1].point);
   EXPECT_EQ(nested.ask(moved(0, 3, 0), options).verdict, Verdict::separated);
   Pair half(oracle::meshes::icosahedron(), oracle::meshes::grid(2, 2));
   // However far away.
@@ -367,11 +368,11 @@ TEST(collide, solids_that_share_planes_intersect) {
     for (const Vector3& d : {Vector3{0.875, 0, 0}, Vector3{0.5, 0.5, 0}, Vector3{0, 0.125, 0}}) {
       EXPECT_EQ(ask(d).verdict, Verdict::intersecting) << name_of(scheme) << ' ' << d.x << ' ' << d.y;
     }
-    EXPECT_TRUE(ask({0.875, 0, 0}).inner);
+    EXPECT_TRUE(ask({0.875, 0, 0}).contained);
     EXPECT_EQ(ask({1.25, 0, 0}).verdict, Verdict::separated);
     EXPECT_EQ(ask({1, 0, 0}).verdict, Verdict::within);        // side by side
     EXPECT_EQ(ask({0, 0, 0}).verdict, Verdict::intersecting);  // the same
-    EXPECT_FALSE(ask({0, 0, 0}).inner);
+    EXPECT_FALSE(ask({0, 0, 0}).contained);
   }
 }
 
@@ -481,7 +482,7 @@ TEST(collide, answers_the_same_with_tight_trees) {
       const Distance far =
           snug::distance({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {1e-4, 0});
       ASSERT_NE(answer.verdict, Verdict::undecided) << i;
-      EXPECT_TRUE(far.reached);
+      EXPECT_EQ(far.outcome, Outcome::complete);
       EXPECT_EQ(answer.verdict == Verdict::separated, far.distance.lower > 0 || far.distance.upper > 1e-4)
           << i;
       EXPECT_LE(answer.distance.lower, far.distance.upper);

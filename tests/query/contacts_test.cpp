@@ -77,8 +77,8 @@ bool listed(const Contacts& found, const Point3& p) {
 TEST(contacts, of_surfaces_apart_or_inside_each_other_there_are_none) {
   const Surface a = ball(), b = rod(0.1, 0.1);
   for (const Vector3& by : {Vector3{9, 0, 0}, Vector3{0, 0, 0}, Vector3{1.2, 1.2, 1.2}}) {
-    const Contacts found = contacts(a, b.at(Motion::translation(by)), {.tolerance = 1e-3});
-    EXPECT_TRUE(found.complete && found.reached);
+    const Contacts found = contacts(a, b.at(Motion::translation(by)), {.within = 1e-3});
+    EXPECT_TRUE(found.exhaustive && found.outcome == Outcome::complete);
     EXPECT_TRUE(found.regions.empty() && found.curves.empty() && found.open.empty());
   }
 }
@@ -87,7 +87,7 @@ TEST(contacts, of_a_ball_and_a_plane_are_one_closed_curve) {
   const Surface a = ball(), b = plane(2.5);
   for (const double height : {-0.6, -0.17, 0.01, 0.31, 0.7}) {
     const Contacts found = contacts(a, b.at(Motion::translation({0.013, 0.021, height})));
-    ASSERT_TRUE(found.complete && found.reached);
+    ASSERT_TRUE(found.exhaustive && found.outcome == Outcome::complete);
     ASSERT_EQ(found.regions.size(), 1u);
     EXPECT_EQ(found.regions[0].verdict, Verdict::intersecting);
     EXPECT_EQ(found.regions[0].distance.upper, 0);
@@ -108,10 +108,10 @@ TEST(contacts, of_a_ball_and_a_plane_are_one_closed_curve) {
 TEST(contacts, along_edges_of_pieces_are_in_open_boxes) {
   const Surface a = ball(), b = plane(2.5);
   const PlacedSurface placed = b.at(Motion::translation({0.013, 0.021, 0}));
-  const Contacts found = contacts(a, placed, {.precision = 0.05});
-  ASSERT_TRUE(found.complete);
+  const Contacts found = contacts(a, placed, {.error = 0.05});
+  ASSERT_TRUE(found.exhaustive);
   EXPECT_FALSE(found.open.empty());
-  const Contacts above = contacts(a, b.at(Motion::translation({0.013, 0.021, 1e-9})), {.precision = 0.05});
+  const Contacts above = contacts(a, b.at(Motion::translation({0.013, 0.021, 1e-9})), {.error = 0.05});
   ASSERT_EQ(above.curves.size(), 1u);
   for (const Point3& p : above.curves[0].points) EXPECT_TRUE(listed(found, {p.x, p.y, 0}));
 }
@@ -133,7 +133,7 @@ Surface tube(std::uint32_t n) {
 
 TEST(contacts, of_a_round_tube_and_a_plane_are_a_circle) {
   const Surface a = tube(32), b = plane(3);
-  const Contacts found = contacts(a, b.at(Motion::translation({0.1, 0.2, 0.05})), {.precision = 1e-3});
+  const Contacts found = contacts(a, b.at(Motion::translation({0.1, 0.2, 0.05})), {.error = 1e-3});
   ASSERT_EQ(found.curves.size(), 1u);
   EXPECT_TRUE(found.curves[0].closed && found.curves[0].proved);
   const Point3& first = found.curves[0].points[0];
@@ -149,7 +149,7 @@ TEST(contacts, of_a_round_tube_and_a_plane_are_a_circle) {
 TEST(contacts, of_a_thin_rod_through_a_thick_one_are_two_closed_curves_in_two_regions) {
   const Surface thick = rod(1, 3, 8), thin = rod(0.2, 3, 7);
   const Motion across = Motion::rotation({1, 0.1, 0.05}, 1.5);
-  const Contacts found = contacts(thick, thin.at(across), {.tolerance = 1e-3});
+  const Contacts found = contacts(thick, thin.at(across), {.within = 1e-3});
   EXPECT_EQ(found.regions.size(), 2u);
   ASSERT_EQ(found.curves.size(), 2u);
   for (const IntersectionCurve& curve : found.curves) EXPECT_TRUE(curve.closed && curve.proved);
@@ -160,7 +160,7 @@ TEST(contacts, curves_end_at_the_border) {
   const Surface a = plane(1), b = plane(3);
   const Contacts found =
       contacts(a, b.at(Motion::translation({0.03, 0.05, 0.07}) * Motion::rotation({1, 0.2, 0.1}, 1.2)),
-               {.precision = 1e-3});
+               {.error = 1e-3});
   ASSERT_EQ(found.curves.size(), 1u);
   const IntersectionCurve& curve = found.curves[0];
   EXPECT_FALSE(curve.closed);
@@ -173,8 +173,8 @@ TEST(contacts, curves_end_at_the_border) {
 TEST(contacts, of_two_sharp_boxes_are_the_polygon_that_is_known) {
   const Surface a = box({1, 1, 1}), b = box({1, 1, 1});
   const Vector3 from{0.3, 0.45, 0.6};
-  const Contacts found = contacts(a, b.at(Motion::translation(from)), {.tolerance = 1e-3});
-  ASSERT_TRUE(found.complete);
+  const Contacts found = contacts(a, b.at(Motion::translation(from)), {.within = 1e-3});
+  ASSERT_TRUE(found.exhaustive);
   ASSERT_EQ(found.regions.size(), 1u);
   ASSERT_EQ(found.curves.size(), 1u);
   EXPECT_TRUE(found.curves[0].closed);
@@ -192,8 +192,8 @@ TEST(contacts, of_two_sharp_boxes_are_the_polygon_that_is_known) {
 TEST(contacts, of_faces_in_each_other_are_in_open_boxes) {
   const Surface a = box({1, 1, 1}), b = box({1, 1, 1});
   const Contacts found =
-      contacts(a, b.at(Motion::translation({0.25, 0.125, 1})), {.tolerance = 0.0, .precision = 0.05});
-  ASSERT_TRUE(found.complete);
+      contacts(a, b.at(Motion::translation({0.25, 0.125, 1})), {.within = 0.0, .error = 0.05});
+  ASSERT_TRUE(found.exhaustive);
   ASSERT_EQ(found.regions.size(), 1u);
   EXPECT_NE(found.regions[0].verdict, Verdict::separated);
   for (double x = 0.25; x <= 1; x += 1.0 / 64) {
@@ -205,7 +205,7 @@ TEST(contacts, of_faces_in_each_other_are_in_open_boxes) {
 TEST(contacts, of_mirrored_surfaces_are_one_closed_curve_with_tiny_gaps) {
   const Surface a = ball();
   const Contacts found = contacts(a, a.at(Motion::translation({0.5, 0, 0})));
-  ASSERT_TRUE(found.complete && found.reached);
+  ASSERT_TRUE(found.exhaustive && found.outcome == Outcome::complete);
   ASSERT_EQ(found.curves.size(), 1u);
   EXPECT_TRUE(found.curves[0].closed);
   EXPECT_FALSE(found.curves[0].proved);
@@ -222,8 +222,8 @@ TEST(contacts, have_end_boxes_as_small_as_derived_where_edges_meet_edges) {
   const Surface a = plane(2.5);
   ControlMesh upright = a.mesh();
   for (Point3& p : upright.points) p = {p.x, 0, p.y};
-  const Contacts found = contacts(a, Surface(std::move(upright)), {.precision = 1e-3});
-  EXPECT_TRUE(found.complete && found.reached);
+  const Contacts found = contacts(a, Surface(std::move(upright)), {.error = 1e-3});
+  EXPECT_TRUE(found.exhaustive && found.outcome == Outcome::complete);
   EXPECT_GT(found.open.size(), 10u);
   for (const OpenBox& open : found.open) EXPECT_LT(longest_side(open.box), 1e-10);
 }
@@ -238,8 +238,8 @@ TEST(contacts, do_not_run_where_a_border_is_hollow) {
   const Surface a(testing::control_mesh(mesh)), b = plane(5, 3);
   const Motion upright = Motion::translation({0.02, 0.25, 0.01}) * Motion::rotation_degrees({1, 0, 0}, 90);
   // Whole patches are compared.
-  const Contacts found = contacts(a, b.at(upright), {.tolerance = 4, .precision = 2});
-  EXPECT_TRUE(found.complete);
+  const Contacts found = contacts(a, b.at(upright), {.within = 4, .error = 2});
+  EXPECT_TRUE(found.exhaustive);
   EXPECT_FALSE(found.curves.empty());
   for (const IntersectionCurve& curve : found.curves) {
     for (std::size_t i = 0; i < curve.boxes.size(); ++i) {
@@ -256,7 +256,7 @@ TEST(contacts, do_not_depend_on_threads_or_earlier_queries) {
   const PlacedSurface placed = b.at(Motion::rotation({1, 2, 3}, 0.8));
   std::optional<Contacts> first;
   for (const int threads : {1, 2, 5, 1}) {
-    const Contacts found = contacts(a, placed, {.precision = 1e-3, .threads = threads});
+    const Contacts found = contacts(a, placed, {.error = 1e-3}, {.threads = threads});
     if (!first) first = found;
     ASSERT_EQ(found.curves.size(), first->curves.size());
     for (std::size_t i = 0; i < found.curves.size(); ++i) {
@@ -279,9 +279,12 @@ TEST(contacts, hold_where_the_budget_ends) {
   const PlacedSurface placed = b.at(Motion::translation({0.013, 0.021, 0.3}));
   const Contacts whole = contacts(a, placed);
   for (const std::uint64_t budget : {1u, 10u, 100u, 1000u, 1000000u}) {
-    const Contacts found = contacts(a, placed, {.budget = budget});
-    if (!found.complete) continue;
-    EXPECT_EQ(found.reached, budget == 1000000u);
+    const Contacts found = contacts(a, placed, {}, {.max_splits = budget});
+    if (!found.exhaustive) {
+      EXPECT_EQ(found.outcome, Outcome::budget_spent);
+      continue;
+    }
+    EXPECT_EQ(found.outcome, budget == 1000000u ? Outcome::complete : Outcome::budget_spent);
     for (const Point3& p : whole.curves[0].points) EXPECT_TRUE(listed(found, p)) << budget;
   }
 }
@@ -290,21 +293,21 @@ TEST(contacts, have_one_region_for_each_place) {
   const Surface a = ball();
   // Twice inside of the tolerance: a plane beside the ball touches it at one place.
   const Surface b = plane(2.5);
-  const Contacts all = contacts(a, b.at(Motion::translation({0.01, 0.02, 0.9})), {.tolerance = 0.2});
+  const Contacts all = contacts(a, b.at(Motion::translation({0.01, 0.02, 0.9})), {.within = 0.2});
   ASSERT_EQ(all.regions.size(), 1u);
   EXPECT_EQ(all.regions[0].verdict, Verdict::within);
   EXPECT_TRUE(all.curves.empty());
   const ContactRegion& region = all.regions[0];
-  EXPECT_LE(distance(region.witness[0], region.witness[1]), 0.2);
-  EXPECT_LE(region.distance.lower, distance(region.witness[0], region.witness[1]));
-  EXPECT_TRUE(region.at[0] && region.at[1]);
+  EXPECT_LE(distance(region.witness[0].point, region.witness[1].point), 0.2);
+  EXPECT_LE(region.distance.lower, distance(region.witness[0].point, region.witness[1].point));
+  EXPECT_TRUE(region.witness[0].at && region.witness[1].at);
 }
 
 TEST(contacts, of_a_flat_sheet_and_itself_are_complete) {
   const Surface a = plane(1);
-  const Contacts found = contacts(a, a, {.tolerance = 0.0, .precision = 0.02, .budget = 5000});
-  EXPECT_TRUE(found.complete);
-  EXPECT_FALSE(found.reached);
+  const Contacts found = contacts(a, a, {.within = 0.0, .error = 0.02}, {.max_splits = 5000});
+  EXPECT_TRUE(found.exhaustive);
+  EXPECT_NE(found.outcome, Outcome::complete);
   EXPECT_TRUE(found.curves.empty());
   for (double x = -0.9; x < 0.9; x += 0.07) EXPECT_TRUE(listed(found, {x, x / 2, 0}));
 }
@@ -313,16 +316,16 @@ TEST(contacts, refuse_bad_lengths) {
   const Surface a = ball();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {-1.0, nan, double{INFINITY}}) {
-    EXPECT_THROW(static_cast<void>(contacts(a, a, {.tolerance = bad})), InputError);
-    EXPECT_THROW(static_cast<void>(contacts(a, a, {.precision = bad})), InputError);
+    EXPECT_THROW(static_cast<void>(contacts(a, a, {.within = bad})), InputError);
+    EXPECT_THROW(static_cast<void>(contacts(a, a, {.error = bad})), InputError);
   }
-  EXPECT_THROW(static_cast<void>(contacts(a, a, {.precision = 0.0})), InputError);
+  EXPECT_THROW(static_cast<void>(contacts(a, a, {.error = 0.0})), InputError);
 }
 
 TEST(contacts, can_do_without_curves) {
   const Surface a = ball(), b = rod(0.4, 2);
   const Contacts found = contacts(a, b.at(Motion::rotation({1, 2, 3}, 0.8)), {.curves = false});
-  EXPECT_TRUE(found.complete);
+  EXPECT_TRUE(found.exhaustive);
   EXPECT_TRUE(found.curves.empty() && found.open.empty());
   EXPECT_EQ(found.compared, 0u);
   for (const ContactRegion& region : found.regions) EXPECT_EQ(region.verdict, Verdict::intersecting);

@@ -101,7 +101,7 @@ TEST(deforming_contact, with_a_wall_is_that_of_the_first_point) {
       EXPECT_GE(found.time.upper, met * (1 - 1e-12)) << what;
     }
     // Within the tolerance no later than it meets, and not long before.
-    EXPECT_TRUE(found.reached) << what;
+    EXPECT_EQ(found.outcome, Outcome::complete) << what;
     EXPECT_LE(found.time.lower, met) << what;
   }
   tally.print();
@@ -161,13 +161,13 @@ TEST(deforming_contact, of_one_that_grows_inside_the_other_is_known) {
     const TimeOfContact found = grows.ask({.tolerance = tolerance});
     EXPECT_LE(found.time.lower, exact + 1e-15);
     EXPECT_GE(found.time.upper, exact - tolerance);
-    EXPECT_TRUE(found.reached);
-    EXPECT_LE(found.looks, 40);
+    EXPECT_EQ(found.outcome, Outcome::complete);
+    EXPECT_LE(found.steps, 40);
   }
   const TimeOfContact solid = grows.ask({.solid = true});
   EXPECT_EQ(solid.verdict, Verdict::intersecting);
   EXPECT_EQ(solid.time.upper, 0);
-  EXPECT_EQ(solid.inner, 1u);
+  EXPECT_EQ(solid.contained, 1u);
   // It may shrink into nothing, or turn inside out, and never meets the wall.
   EXPECT_EQ((Boxes{cube(1), cube(1), cube(0.5), cube(0)}.ask().verdict), Verdict::separated);
   EXPECT_EQ((Boxes{cube(1), cube(1), cube(0.5), cube(-0.5)}.ask().verdict), Verdict::separated);
@@ -188,7 +188,7 @@ TEST(deforming_contact, has_an_upper_end_where_surfaces_come_to_lie_in_each_othe
   const std::vector<Point3> end = round(3).points;
   for (const std::uint64_t budget : {60'000u, 400'000u}) {
     const TimeOfContact found =
-        time_of_contact({a}, {.surface = b, .end = end}, {.tolerance = 2e-3, .budget = budget});
+        time_of_contact({a}, {.surface = b, .end = end}, {.tolerance = 2e-3}, {.max_splits = budget});
     EXPECT_LE(found.time.lower, 0.9 / 2.9);
     EXPECT_NE(found.verdict, Verdict::undecided);
     EXPECT_GE(found.time.upper, 0.9 / 2.9 - 1e-3);
@@ -211,9 +211,10 @@ TEST(deforming_contact, of_public_surfaces_is_the_same_again_and_again) {
   EXPECT_LE(again.time.lower, 0.75);
   EXPECT_GE(again.time.upper, 0.75 - 1e-12);
   Workspace other;
-  const TimeOfContact same = time_of_contact({a}, {b, end, motion}, {.tolerance = 1e-4}, {}, other);
+  const TimeOfContact same =
+      time_of_contact({a}, {b, end, motion}, {.tolerance = 1e-4}, {.workspace = &other});
   EXPECT_EQ(same.time, found.time);
-  EXPECT_EQ(same.looks, found.looks);
+  EXPECT_EQ(same.steps, found.steps);
 }
 
 TEST(deforming_contact, of_solids_apart_at_first_is_that_of_their_surfaces) {
@@ -224,7 +225,7 @@ TEST(deforming_contact, of_solids_apart_at_first_is_that_of_their_surfaces) {
     EXPECT_LE(found.time.lower, 2.0 / 3);
     EXPECT_GE(found.time.upper, 2.0 / 3 - 1e-4);
     EXPECT_LE(found.time.upper, 2.0 / 3 + 1e-3);
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
     EXPECT_EQ(found.verdict, Verdict::intersecting);
   }
 }
@@ -240,7 +241,7 @@ TEST(deforming_contact, that_touches_at_the_end_alone_or_passes_closely_is_told_
   const Boxes past{cube(1), cube(1), cube(0.5, {-3, 0, 1.5 + 1e-4}), cube(0.5, {3, 0, 1.5 + 1e-4})};
   const TimeOfContact found = past.ask({.tolerance = 1e-6});
   EXPECT_NE(found.verdict, Verdict::intersecting);
-  std::cout << "  past: " << found.looks << " looks, " << static_cast<int>(found.verdict) << '\n';
+  std::cout << "  past: " << found.steps << " looks, " << static_cast<int>(found.verdict) << '\n';
 }
 
 TEST(deforming_contact, knows_the_speed_of_all_that_meets) {

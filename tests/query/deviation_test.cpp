@@ -52,9 +52,9 @@ void expect_distance(const OneSidedDistance& found, double truth, double precisi
   EXPECT_LE(found.distance.lower, truth + rounding);
   EXPECT_GE(found.distance.upper, truth - rounding);
   EXPECT_LE(found.distance.upper - found.distance.lower, precision);
-  const double apart =
-      std::hypot(found.from.x - found.to.x, found.from.y - found.to.y, found.from.z - found.to.z);
-  EXPECT_GE(apart, found.distance.lower - 2 * found.error);
+  const double apart = std::hypot(found.from.point.x - found.to.x, found.from.point.y - found.to.y,
+                                  found.from.point.z - found.to.z);
+  EXPECT_GE(apart, found.distance.lower - 2 * found.from.error);
 }
 
 TEST(deviation, of_cubes_is_known) {
@@ -66,7 +66,7 @@ TEST(deviation, of_cubes_is_known) {
     const Deviation same = compared(unit, triangles(cube()));
     expect_distance(same.from_surface, 0);
     expect_distance(same.from_candidate, 0);
-    EXPECT_TRUE(same.reached);
+    EXPECT_EQ(same.outcome, Outcome::complete);
     const Deviation moved = compared(unit, triangles(cube(1, {0.25, 0, 0})));
     expect_distance(moved.from_surface, 0.25);
     expect_distance(moved.from_candidate, 0.25);
@@ -76,7 +76,7 @@ TEST(deviation, of_cubes_is_known) {
     const Deviation beside = compared(unit, triangles(cube(1, {1e6, 0, 0})), 1e-3);
     expect_distance(beside.from_surface, 1e6, 1e-3);
     expect_distance(beside.from_candidate, 1e6, 1e-3);
-    EXPECT_TRUE(beside.reached);
+    EXPECT_EQ(beside.outcome, Outcome::complete);
     EXPECT_FALSE(beside.inside || beside.outside);
   }
 }
@@ -94,11 +94,11 @@ TEST(deviation, finds_what_is_missing_and_what_is_too_much) {
   const Deviation speck = compared(unit, testing::candidate_of(open));
   expect_distance(speck.from_surface, 0.5);
   expect_distance(speck.from_candidate, 3);
-  EXPECT_EQ(speck.from_candidate.from, (Point3{0.5, 0.5, 4}));
-  EXPECT_FALSE(speck.from_candidate.at.has_value());
-  ASSERT_TRUE(speck.from_surface.at.has_value());
-  const Point3 there = evaluate(unit, *speck.from_surface.at).position;
-  const Point3& from = speck.from_surface.from;
+  EXPECT_EQ(speck.from_candidate.from.point, (Point3{0.5, 0.5, 4}));
+  EXPECT_FALSE(speck.from_candidate.from.at.has_value());
+  ASSERT_TRUE(speck.from_surface.from.at.has_value());
+  const Point3 there = evaluate(unit, *speck.from_surface.from.at).point;
+  const Point3& from = speck.from_surface.from.point;
   EXPECT_LE(std::hypot(there.x - from.x, there.y - from.y, there.z - from.z), 1e-12);
 }
 
@@ -130,7 +130,7 @@ TEST(deviation, of_a_tessellation_is_small_and_that_of_the_control_mesh_is_known
     for (const unsigned level : {2u, 3u, 4u}) {
       const Deviation found =
           compared(ball, testing::candidate_of(testing::triangles_of(subdivided(ball, level, true))), 1e-4);
-      EXPECT_TRUE(found.reached);
+      EXPECT_EQ(found.outcome, Outcome::complete);
       EXPECT_LT(found.from_surface.distance.upper, before / 2);
       EXPECT_LE(found.from_candidate.distance.lower, found.from_surface.distance.upper + 0.1);
       before = std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper);
@@ -139,7 +139,7 @@ TEST(deviation, of_a_tessellation_is_small_and_that_of_the_control_mesh_is_known
     // A corner of the cube is as far from the surface as the limit of that corner, by symmetry.
     const Deviation cage = compared(ball, triangles(cube()), 1e-5);
     if (scheme == Scheme::catmark) {
-      const Point3 corner = evaluate(ball, {.owner = 0, .corner = 0, .u = 0, .v = 0}).position;
+      const Point3 corner = evaluate(ball, {.owner = 0, .corner = 0, .u = 0, .v = 0}).point;
       const double off = std::fabs(corner.x - std::round(corner.x));
       expect_distance(cage.from_candidate, std::sqrt(3.0) * off, 1e-5);
     }
@@ -153,7 +153,7 @@ TEST(deviation, of_two_surfaces_is_that_of_their_triangles) {
   const Deviation found = deviation(unit, other, {.absolute = 1e-6});
   expect_distance(found.from_surface, 0.25);
   expect_distance(found.from_candidate, 0.25);
-  EXPECT_TRUE(found.from_surface.at && found.from_candidate.at);
+  EXPECT_TRUE(found.from_surface.from.at && found.from_candidate.from.at);
   const Surface ball = surface_of(cube(), Scheme::catmark);
   const Deviation itself = deviation(ball, ball, {.absolute = 1e-4});
   expect_distance(itself.from_surface, 0, 1e-4);
@@ -169,7 +169,7 @@ TEST(deviation, on_each_side_of_a_solid_is_known) {
     expect_distance(*found.inside, inside, precision);
     expect_distance(*found.outside, outside, precision);
     expect_distance(found.from_candidate, std::max(inside, outside), precision);
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
   };
   expect_sides(cube(0.5, {0.25, 0.25, 0.25}), 0.25, 0);
   expect_sides(cube(3, {-1, -1, -1}), 0, std::sqrt(3.0));
@@ -197,9 +197,9 @@ TEST(deviation, answers_a_tolerance_and_no_more) {
   for (const double tolerance : {0.0, 1e-9, 0.1, 0.2499, 0.2501, 1.0, 1e9}) {
     DeviationOptions options;
     options.absolute = 1e-6;
-    options.tolerance = tolerance;
+    options.threshold = tolerance;
     const Deviation found = deviation(unit, moved, options);
-    EXPECT_TRUE(found.reached) << tolerance;
+    EXPECT_EQ(found.outcome, Outcome::complete) << tolerance;
     for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
       EXPECT_TRUE(d.contains(0.25)) << tolerance;
       EXPECT_EQ(d.lower > tolerance, tolerance < 0.25);
@@ -209,9 +209,9 @@ TEST(deviation, answers_a_tolerance_and_no_more) {
   // Where nothing is between: the interval, as narrow as it was asked for.
   DeviationOptions options;
   options.absolute = 1e-6;
-  options.tolerance = 0.25;
+  options.threshold = 0.25;
   const Deviation found = deviation(unit, moved, options);
-  EXPECT_TRUE(found.reached);
+  EXPECT_EQ(found.outcome, Outcome::complete);
   EXPECT_TRUE(found.from_surface.distance.contains(0.25));
 }
 
@@ -220,7 +220,7 @@ TEST(deviation, is_true_with_any_budget) {
   const std::vector<Triangle> candidate =
       testing::candidate_of(testing::triangles_of(subdivided(ball, 1, true)));
   const Deviation truth = compared(ball, candidate, 1e-4);
-  ASSERT_TRUE(truth.reached);
+  ASSERT_EQ(truth.outcome, Outcome::complete);
   const auto overlap = [](const Interval& a, const Interval& b) {
     return a.lower <= b.upper && b.lower <= a.upper;
   };
@@ -228,14 +228,13 @@ TEST(deviation, is_true_with_any_budget) {
     for (const bool solid : {false, true}) {
       DeviationOptions options;
       options.absolute = 1e-4;
-      options.budget = budget;
       options.solid = solid;
-      const Deviation found = deviation(ball, candidate, options);
+      const Deviation found = deviation(ball, candidate, options, {.max_splits = budget});
       EXPECT_TRUE(overlap(found.from_surface.distance, truth.from_surface.distance)) << budget;
       EXPECT_TRUE(overlap(found.from_candidate.distance, truth.from_candidate.distance)) << budget;
       const bool narrow = found.from_surface.distance.upper - found.from_surface.distance.lower <= 1e-4 &&
                           found.from_candidate.distance.upper - found.from_candidate.distance.lower <= 1e-4;
-      EXPECT_TRUE(narrow || !found.reached) << budget;
+      EXPECT_TRUE(narrow || found.outcome == Outcome::budget_spent) << budget;
     }
   }
 }
@@ -247,11 +246,9 @@ TEST(deviation, depends_on_no_threads) {
   DeviationOptions options;
   options.absolute = 1e-3;
   options.solid = true;
-  options.threads = 1;
-  const Deviation one = deviation(ball, candidate, options);
+  const Deviation one = deviation(ball, candidate, options, {.threads = 1});
   for (const int threads : {2, 3, 0}) {
-    options.threads = threads;
-    const Deviation many = deviation(ball, candidate, options);
+    const Deviation many = deviation(ball, candidate, options, {.threads = threads});
     for (const auto& [a, b] : {std::pair{&one.from_surface, &many.from_surface},
                                {&one.from_candidate, &many.from_candidate},
                                {&*one.inside, &*many.inside},
@@ -259,7 +256,7 @@ TEST(deviation, depends_on_no_threads) {
       EXPECT_EQ(a->distance, b->distance);
       EXPECT_EQ(a->from, b->from);
       EXPECT_EQ(a->to, b->to);
-      EXPECT_EQ(a->error, b->error);
+      EXPECT_EQ(a->from.error, b->from.error);
     }
   }
 }
@@ -282,7 +279,7 @@ TEST(deviation, does_not_depend_on_the_unit) {
       EXPECT_LE(std::ldexp(b->distance.lower, -power), a->distance.upper);
       EXPECT_GE(std::ldexp(b->distance.upper, -power), a->distance.lower);
     }
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
   }
 }
 
@@ -311,15 +308,15 @@ TEST(deviation, refuses_what_has_no_answer) {
       expect_refused(InputProblem::value, "triangle 7", ask(bad, {}));
     }
     expect_refused(InputProblem::value, "precision", ask(good, {.absolute = x}));
-    expect_refused(InputProblem::value, "tolerance", ask(good, {.tolerance = x}));
+    expect_refused(InputProblem::value, "threshold", ask(good, {.threshold = x}));
   }
   expect_refused(InputProblem::value, "precision", ask(good, {.absolute = 0}));
   expect_refused(InputProblem::value, "precision", ask(good, {.absolute = -1e-3}));
   expect_refused(InputProblem::value, "precision", ask(good, {.absolute = 1e-13}));
   expect_refused(InputProblem::value, "precision",
                  ask(good, {.absolute = std::numeric_limits<double>::denorm_min()}));
-  expect_refused(InputProblem::value, "tolerance", ask(good, {.tolerance = -1e-300}));
-  EXPECT_NO_THROW(ask(good, {.tolerance = 0})());
+  expect_refused(InputProblem::value, "threshold", ask(good, {.threshold = -1e-300}));
+  EXPECT_NO_THROW(ask(good, {.threshold = 0})());
   // Coordinates of the candidate count, too.
   expect_refused(InputProblem::value, "precision", ask(triangles(cube(1, {1e9, 0, 0})), {.absolute = 1e-6}));
 
@@ -354,8 +351,8 @@ TEST(deviation, can_be_watched_and_stopped) {
   std::atomic<bool> stop{true};
   WorkMonitor stopped;
   stopped.stop = &stop;
-  EXPECT_THROW(static_cast<void>(deviation(ball, candidate, {}, stopped)), Interrupted);
-  EXPECT_THROW(static_cast<void>(deviation(ball, ball, {}, stopped)), Interrupted);
+  EXPECT_THROW(static_cast<void>(deviation(ball, candidate, {}, {.monitor = &stopped})), Interrupted);
+  EXPECT_THROW(static_cast<void>(deviation(ball, ball, {}, {.monitor = &stopped})), Interrupted);
   // In the middle, too; then it is as it was.
   stop = false;
   std::atomic<int> reports{0};
@@ -364,10 +361,10 @@ TEST(deviation, can_be_watched_and_stopped) {
     EXPECT_LE(done, 1);
     if (++reports == 2) stop = true;
   };
-  EXPECT_THROW(static_cast<void>(deviation(ball, candidate, {}, stopped)), Interrupted);
+  EXPECT_THROW(static_cast<void>(deviation(ball, candidate, {}, {.monitor = &stopped})), Interrupted);
   stop = false;
   reports = 100;
-  EXPECT_TRUE(deviation(ball, candidate, {}, stopped).reached);
+  EXPECT_EQ(deviation(ball, candidate, {}, {.monitor = &stopped}).outcome, Outcome::complete);
 }
 
 }  // namespace

@@ -37,8 +37,10 @@ struct Model {
       : Model(testing::control_mesh(mesh), options_of(scheme)) {}
   Model(ControlMesh mesh, const SchemeOptions& options)
       : surface(std::move(mesh), options, std::make_shared<BoundsCache>()), bvh(surface) {}
-  [[nodiscard]] Hulls hulls(HullOptions options) const { return snug::hulls(bvh, options); }
-  [[nodiscard]] Hulls hulls(double tolerance) const { return hulls(HullOptions{.tolerance = tolerance}); }
+  [[nodiscard]] Hulls hulls(const HullOptions& options, const Run& run = {}) const {
+    return snug::hull(bvh, options, run);
+  }
+  [[nodiscard]] Hulls hulls(double tolerance) const { return hulls(HullOptions{.error = tolerance}); }
 
   LimitSurface surface;
   SurfaceBvh bvh;
@@ -141,8 +143,8 @@ TEST(hulls, sandwich_surfaces_of_each_kind) {
     const Model model(c.mesh, c.scheme);
     const double tolerance = 0.02 * model.surface.size();
     const Hulls found = model.hulls(tolerance);
-    EXPECT_TRUE(found.verified) << c.name << ": "
-                                << (found.problems.empty() ? "" : name_of(found.problems[0].fault));
+    EXPECT_EQ(found.outcome, Outcome::complete)
+        << c.name << ": " << (found.problems.empty() ? "" : name_of(found.problems[0].fault));
     ASSERT_TRUE(found.inner && found.outer) << c.name;
     testing::expect_sandwich(c.mesh, c.scheme, found, tolerance, 4, c.name, counts);
     EXPECT_EQ(found.inner->owners.size(), found.inner->triangles.size());
@@ -156,10 +158,10 @@ TEST(hulls, sandwich_surfaces_of_each_kind) {
 TEST(hulls, of_one_side_are_those_of_both) {
   const Model model(meshes::cube());
   const Hulls all = model.hulls(0.02);
-  const Hulls inner = model.hulls(HullOptions{.tolerance = 0.02, .outer = false}),
-              outer = model.hulls(HullOptions{.tolerance = 0.02, .inner = false});
+  const Hulls inner = model.hulls(HullOptions{.error = 0.02, .outer = false}),
+              outer = model.hulls(HullOptions{.error = 0.02, .inner = false});
   EXPECT_FALSE(inner.outer || outer.inner);
-  EXPECT_TRUE(inner.verified && outer.verified);
+  EXPECT_TRUE(inner.outcome == Outcome::complete && outer.outcome == Outcome::complete);
   EXPECT_EQ(inner.inner->positions, all.inner->positions);
   EXPECT_EQ(outer.outer->positions, all.outer->positions);
 }
@@ -167,7 +169,7 @@ TEST(hulls, of_one_side_are_those_of_both) {
 TEST(hulls, of_a_flat_sheet_lie_behind_and_in_front_of_it) {
   const Model model(meshes::quad_grid(3, 3));
   const Hulls found = model.hulls(0.1);
-  ASSERT_TRUE(found.verified);
+  ASSERT_EQ(found.outcome, Outcome::complete);
   EXPECT_FALSE(found.closed);
   for (const Point3& p : found.inner->positions) EXPECT_LT(p.z, 0);
   for (const Point3& p : found.outer->positions) EXPECT_GT(p.z, 0);
@@ -180,16 +182,16 @@ TEST(hulls, face_outward_whichever_way_faces_do) {
     const Model model(inward);
     const double tolerance = 0.02 * model.surface.size();
     const Hulls found = model.hulls(tolerance);
-    ASSERT_TRUE(found.verified);
+    ASSERT_EQ(found.outcome, Outcome::complete);
     testing::expect_sandwich(mesh, Rules{}, found, tolerance, 4, "inward", counts);
   }
 }
 
 TEST(hulls, do_not_depend_on_threads) {
   const Model model(star(), loop);
-  const Hulls one = model.hulls(HullOptions{.tolerance = 0.03, .threads = 1}),
-              three = model.hulls(HullOptions{.tolerance = 0.03, .threads = 3});
-  ASSERT_TRUE(one.verified && three.verified);
+  const Hulls one = model.hulls(HullOptions{.error = 0.03}, {.threads = 1}),
+              three = model.hulls(HullOptions{.error = 0.03}, {.threads = 3});
+  ASSERT_TRUE(one.outcome == Outcome::complete && three.outcome == Outcome::complete);
   EXPECT_EQ(one.inner->positions, three.inner->positions);
   EXPECT_EQ(one.inner->triangles, three.inner->triangles);
   EXPECT_EQ(one.outer->positions, three.outer->positions);
@@ -203,8 +205,8 @@ TEST(hulls, of_floats_are_floats_and_proved) {
       const TaggedMesh mesh = moved(plain, 1, {far, -far, 0.1});
       const Model model(mesh);
       const double tolerance = 0.02 * model.surface.size();
-      const Hulls found = model.hulls(HullOptions{.tolerance = tolerance, .single_precision = true});
-      EXPECT_TRUE(found.verified) << far;
+      const Hulls found = model.hulls(HullOptions{.error = tolerance, .single_precision = true});
+      EXPECT_EQ(found.outcome, Outcome::complete) << far;
       testing::expect_sandwich(mesh, Rules{}, found, tolerance, 4, "floats", counts);
       for (const Hull* const hull : {&*found.inner, &*found.outer}) {
         for (const Point3& p : hull->positions) {
@@ -220,26 +222,27 @@ TEST(hulls, of_floats_withstand_their_rounding) {
   TaggedMesh mesh = moved(meshes::cube(), 1, {1.1, -1.2, 1.3});
   for (oracle::Point& p : mesh.points) p = {p[0] - 0.3 * p[1], p[1] + 0.2 * p[2], p[2] + 0.1 * p[0]};
   const Model model(testing::control_mesh(mesh), bilinear);
-  HullOptions options{.tolerance = 1e-9, .single_precision = true};
+  HullOptions options{.error = 1e-9, .single_precision = true};
   std::string message;
   try {
     static_cast<void>(model.hulls(options));
   } catch (const InputError& error) {
     message = error.what();
   }
-  ASSERT_NE(message.find("floats allow no tolerance below "), std::string::npos) << message;
-  options.tolerance = std::stod(message.substr(message.find("below ") + 6));
+  ASSERT_NE(message.find("floats allow no error below "), std::string::npos) << message;
+  options.error = std::stod(message.substr(message.find("below ") + 6));
   const Hulls found = model.hulls(options);
-  EXPECT_TRUE(found.verified) << (found.problems.empty() ? "" : name_of(found.problems[0].fault));
+  EXPECT_EQ(found.outcome, Outcome::complete)
+      << (found.problems.empty() ? "" : name_of(found.problems[0].fault));
 }
 
 TEST(hulls, do_not_depend_on_the_unit) {
   const Hulls plain = Model(meshes::cube()).hulls(0x1p-6);
-  ASSERT_TRUE(plain.verified);
+  ASSERT_EQ(plain.outcome, Outcome::complete);
   for (const int exponent : {-990, -300, 300, 990}) {
     const Model model(moved(meshes::cube(), std::ldexp(1, exponent), {}));
     const Hulls found = model.hulls(std::ldexp(1, exponent - 6));
-    EXPECT_TRUE(found.verified) << exponent;
+    EXPECT_EQ(found.outcome, Outcome::complete) << exponent;
     EXPECT_EQ(found.outer->triangles, plain.outer->triangles);
     EXPECT_NEAR(std::ldexp(found.outer->gap, -exponent), plain.outer->gap, 1e-12);
   }
@@ -259,7 +262,7 @@ TEST(hulls, refuse_what_has_no_two_sides) {
   for (const auto& [mesh, part] : {std::pair{meshes::moebius(5), "the same way"},
                                    {meshes::book(3), "the same way"},
                                    {meshes::same_ways(), "the same way"}}) {
-    const std::string message = refusal(Model(mesh), {.tolerance = 0.1}, InputProblem::refused);
+    const std::string message = refusal(Model(mesh), {.error = 0.1}, InputProblem::refused);
     EXPECT_NE(message.find(part), std::string::npos) << message;
     EXPECT_NE(message.find("faces "), std::string::npos) << message;
   }
@@ -268,28 +271,27 @@ TEST(hulls, refuse_what_has_no_two_sides) {
 TEST(hulls, refuse_what_is_no_tolerance) {
   const Model model(meshes::cube());
   for (const double tolerance : {0.0, -1.0, double{NAN}, double{INFINITY}}) {
-    EXPECT_NE(refusal(model, {.tolerance = tolerance}, InputProblem::value).find("finite and greater than 0"),
+    EXPECT_NE(refusal(model, {.error = tolerance}, InputProblem::value).find("finite and greater than 0"),
               std::string::npos);
   }
-  EXPECT_NE(refusal(model, {.tolerance = 1}, InputProblem::value).find("at most 0.5"), std::string::npos);
+  EXPECT_NE(refusal(model, {.error = 1}, InputProblem::value).find("at most 0.5"), std::string::npos);
+  EXPECT_NE(refusal(model, {.error = 1e-15}, InputProblem::value).find("doubles allow no error below"),
+            std::string::npos);
   EXPECT_NE(
-      refusal(model, {.tolerance = 1e-15}, InputProblem::value).find("doubles allow no tolerance below"),
-      std::string::npos);
-  EXPECT_NE(
-      refusal(model, {.tolerance = 0.1, .inner = false, .outer = false}, InputProblem::value).find("ask for"),
+      refusal(model, {.error = 0.1, .inner = false, .outer = false}, InputProblem::value).find("ask for"),
       std::string::npos);
 }
 
 TEST(hulls, refuse_floats_that_do_not_fit) {
   const Model model(moved(meshes::cube(), 1e39, {}));
-  EXPECT_NE(refusal(model, {.tolerance = 1e37, .single_precision = true}, InputProblem::unrepresentable)
+  EXPECT_NE(refusal(model, {.error = 1e37, .single_precision = true}, InputProblem::unrepresentable)
                 .find("does not fit a float"),
             std::string::npos);
 }
 
 // Some problem is near a place.
 void expect_problem_near(const Hulls& found, const Point3& place, double reach, const std::string& name) {
-  EXPECT_FALSE(found.verified) << name;
+  EXPECT_NE(found.outcome, Outcome::complete) << name;
   EXPECT_TRUE(std::any_of(found.problems.begin(), found.problems.end(), [&](const HullProblem& p) {
     return distance(p.place, place) <= reach;
   })) << name;
@@ -313,7 +315,7 @@ TEST(hulls, are_not_verified_of_surfaces_that_touch_themselves) {
 
 TEST(hulls, are_not_verified_of_sheets_on_each_other) {
   const Model twice(testing::control_mesh(both(meshes::cube(), meshes::cube())), bilinear);
-  EXPECT_FALSE(twice.hulls(0.01).verified);
+  EXPECT_NE(twice.hulls(0.01).outcome, Outcome::complete);
 }
 
 TEST(hulls, pass_between_sheets_that_are_near_to_each_other) {
@@ -324,7 +326,7 @@ TEST(hulls, pass_between_sheets_that_are_near_to_each_other) {
     const Model model(mesh);
     const double tolerance = 0.1;
     const Hulls found = model.hulls(tolerance);
-    EXPECT_TRUE(found.verified) << gap;
+    EXPECT_EQ(found.outcome, Outcome::complete) << gap;
     testing::expect_sandwich(mesh, Rules{}, found, tolerance, 3, "sheets", counts);
   }
   expect_problem_near(Model(both(grid, grid)).hulls(0.1), {1.5, 1.5, 0}, 1, "on each other");
@@ -337,7 +339,7 @@ TEST(hulls, of_a_thin_plate_are_inside_and_outside_of_it) {
   const Model model(plate);
   const double tolerance = 0.02;
   const Hulls found = model.hulls(tolerance);
-  EXPECT_TRUE(found.verified);
+  EXPECT_EQ(found.outcome, Outcome::complete);
   testing::expect_sandwich(plate, Rules{}, found, tolerance, 5, "plate", counts);
 }
 
@@ -346,7 +348,7 @@ TEST(hulls, are_not_verified_where_vertices_coincide) {
   mesh.points[7] = mesh.points[6];
   const Model model(mesh);
   const Hulls found = model.hulls(0.02);
-  if (found.verified) {
+  if (found.outcome == Outcome::complete) {
     HullCounts counts;
     testing::expect_sandwich(mesh, Rules{}, found, 0.02, 4, "coincident", counts);
   } else {
@@ -358,8 +360,8 @@ TEST(hulls, are_not_verified_where_vertices_coincide) {
 
 TEST(hulls, end_with_their_budget) {
   const Model model(star(), loop);
-  const Hulls found = model.hulls(HullOptions{.tolerance = 1e-4, .budget = 200});
-  EXPECT_FALSE(found.verified);
+  const Hulls found = model.hulls(HullOptions{.error = 1e-4}, {.max_splits = 200});
+  EXPECT_EQ(found.outcome, Outcome::budget_spent);
   ASSERT_FALSE(found.problems.empty());
   EXPECT_LE(found.inner->triangles.size(), 200u);
 }
@@ -367,21 +369,22 @@ TEST(hulls, end_with_their_budget) {
 TEST(hulls, stop_when_asked) {
   const Model model(star(), loop);
   const std::atomic<bool> stop = true;
-  EXPECT_THROW(static_cast<void>(hulls(model.bvh, {.tolerance = 0.01}, {{}, &stop})), Interrupted);
+  const WorkMonitor monitor{{}, &stop};
+  EXPECT_THROW(static_cast<void>(hull(model.bvh, {.error = 0.01}, {.monitor = &monitor})), Interrupted);
 }
 
 std::set<HullFault> faults_of(const Model& model, const Hulls& hulls, double tolerance) {
   std::set<HullFault> faults;
-  for (const HullProblem& p : problems_of(model.bvh, hulls, {.tolerance = tolerance})) faults.insert(p.fault);
+  for (const HullProblem& p : problems_of(model.bvh, hulls, {.error = tolerance})) faults.insert(p.fault);
   return faults;
 }
 
-// The final check of hulls() does not know how its hulls were made: it must find their faults.
+// The final check of hull() does not know how its hulls were made: it must find their faults.
 TEST(hulls, that_are_spoiled_are_found_out) {
   const Model model(meshes::cube());
   const double tolerance = 0.02;
   const Hulls good = model.hulls(tolerance);
-  ASSERT_TRUE(good.verified);
+  ASSERT_EQ(good.outcome, Outcome::complete);
   EXPECT_TRUE(faults_of(model, good, tolerance).empty());
   const Point3 centre{0.5, 0.5, 0.5};
   for (const bool inner : {true, false}) {
@@ -432,7 +435,7 @@ TEST(hulls, with_a_component_on_the_wrong_side_are_found_out) {
   const Model model(mesh);
   const double tolerance = 0.05;
   Hulls hulls = model.hulls(tolerance);
-  ASSERT_TRUE(hulls.verified);
+  ASSERT_EQ(hulls.outcome, Outcome::complete);
   for (const bool inner : {true, false}) {
     Hulls bad = hulls;
     Hull& hull = inner ? *bad.inner : *bad.outer;

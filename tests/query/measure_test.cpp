@@ -80,7 +80,7 @@ TEST(measure, holds_the_exact_moments_of_regular_tori) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const oracle::TaggedMesh mesh = torus(4, 3, triangles, seed);
       const Measures found = measure(surface_of(mesh, scheme));
-      EXPECT_TRUE(found.reached);
+      EXPECT_EQ(found.outcome, Outcome::complete);
       expect_exact(found, oracle::exact_measures(basis, 4, 3, mesh.points), 10, name_of(scheme));
     }
   }
@@ -105,7 +105,7 @@ TEST(measure, holds_the_moments_of_boxes) {
                            Case{"sharp loop", surface_of(meshes::triangulated(sharp), Scheme::loop)}}) {
     SCOPED_TRACE(each.name);
     const Measures found = measure(each.surface, {.relative = 1e-6});
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
     EXPECT_TRUE(found.area.contains(2 * (a * b + b * c + c * a)));
     ASSERT_TRUE(found.inertia);
     EXPECT_TRUE(found.volume->contains(v));
@@ -124,7 +124,7 @@ TEST(measure, holds_those_of_polyhedra) {
                            meshes::pyramid(7), meshes::two_cubes_at_a_vertex()}) {
     const Measures found = measure(surface_of(mesh, Scheme::bilinear));
     const oracle::MeasureValues exact = oracle::polyhedron_measures(mesh);
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
     ASSERT_TRUE(found.inertia);
     const auto expect_near = [](const Interval& x, long double y) {
       EXPECT_LE(x.lower, y + 1e-12L);
@@ -142,7 +142,7 @@ TEST(measure, holds_those_of_polyhedra) {
 TEST(measure, ends_where_nothing_can_be_asked_for) {
   for (const auto& mesh : {meshes::cube(), meshes::quad_grid(2, 2)}) {
     const Measures found = measure(surface_of(mesh, Scheme::bilinear), {.relative = 0});
-    EXPECT_FALSE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::at_rounding);
     EXPECT_LE(width(found.area), 1e-10 * found.area.upper);
     EXPECT_LE(found.splits, 1000);
   }
@@ -170,7 +170,7 @@ TEST(measure, narrows_the_area_of_a_saddle) {
   std::uint64_t before = 0;
   for (const double relative : {1e-2, 1e-4, 1e-7, 1e-10, 1e-11}) {
     const Measures found = measure(surface_of(saddle, Scheme::bilinear), {.relative = relative});
-    EXPECT_TRUE(found.reached) << relative;
+    EXPECT_EQ(found.outcome, Outcome::complete) << relative;
     EXPECT_LE(width(found.area), relative * found.area.upper) << relative;
     EXPECT_LE(found.area.lower, area * (1 + 1e-13)) << relative;
     EXPECT_GE(found.area.upper, area * (1 - 1e-13)) << relative;
@@ -187,7 +187,7 @@ TEST(measure, narrows_the_area_of_a_collapsed_quad) {
   quad.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
   quad.polygons = {{0, 1, 2, 3}};
   const Measures found = measure(surface_of(quad, Scheme::bilinear), {.relative = 1e-4});
-  EXPECT_TRUE(found.reached);
+  EXPECT_EQ(found.outcome, Outcome::complete);
   EXPECT_TRUE(found.area.contains(0.5));
 }
 
@@ -206,7 +206,7 @@ TEST(measure, is_between_inner_and_outer_spheres) {
   }
   const double inner = least - 1e-3, pi = std::numbers::pi;
   const Measures found = measure(surface_of(mesh, Scheme::catmark));
-  EXPECT_TRUE(found.reached);
+  EXPECT_EQ(found.outcome, Outcome::complete);
   EXPECT_LE(found.area.lower, 4 * pi);
   EXPECT_GE(found.area.upper, 4 * pi * inner * inner);
   EXPECT_LE(found.volume->lower, 4 * pi / 3);
@@ -228,7 +228,7 @@ TEST(measure, of_moved_and_scaled_surfaces_agree) {
       for (oracle::Point& p : mesh.points) p = {scale * p[0], scale * p[1], scale * p[2]};
       const Measures found = measure(surface_of(mesh, scheme));
       const std::string name = std::string(name_of(scheme)) + " times " + std::to_string(scale);
-      EXPECT_TRUE(found.reached) << name;
+      EXPECT_EQ(found.outcome, Outcome::complete) << name;
       expect_same(found.area, still.area, scale * scale, name);
       expect_same(*found.volume, *still.volume, std::pow(scale, 3), name);
       for (std::size_t k = 0; k < 6; ++k)
@@ -239,7 +239,7 @@ TEST(measure, of_moved_and_scaled_surfaces_agree) {
       for (oracle::Point& p : mesh.points) p = {p[0] + away, p[1] - away, p[2] + 3 * away};
       const Measures found = measure(surface_of(mesh, scheme));
       const std::string name = std::string(name_of(scheme)) + " at " + std::to_string(away);
-      EXPECT_TRUE(found.reached) << name;
+      EXPECT_EQ(found.outcome, Outcome::complete) << name;
       // Sums of coordinates round.
       const double rounding = 16 * away * std::numeric_limits<double>::epsilon();
       EXPECT_NEAR(found.volume->lower, still.volume->lower, 2e-4 * std::fabs(still.volume->upper) + rounding);
@@ -284,7 +284,7 @@ TEST(measure, of_open_surfaces_is_the_area_alone) {
     const Measures found = measure(surface_of(mesh, Scheme::bilinear));
     EXPECT_GT(found.area.lower, 0);
     EXPECT_FALSE(found.volume || found.centroid || found.inertia);
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
   }
   oracle::TaggedMesh hole = meshes::cube();
   hole.holes = {2};
@@ -297,15 +297,15 @@ TEST(measure, of_a_flat_solid_has_no_centroid) {
   ASSERT_TRUE(found.volume);
   EXPECT_TRUE(found.volume->contains(0));
   EXPECT_FALSE(found.centroid || found.inertia);
-  EXPECT_TRUE(found.reached);
+  EXPECT_EQ(found.outcome, Outcome::complete);
 }
 
 TEST(measure, is_the_same_for_any_number_of_threads) {
   std::mt19937_64 random(3);
   const oracle::TaggedMesh mesh = meshes::shaken(meshes::pyramid(7), 0.2, random);
   for (const Scheme scheme : {Scheme::catmark, Scheme::midedge}) {
-    const Measures one = measure(surface_of(mesh, scheme), {.threads = 1});
-    const Measures three = measure(surface_of(mesh, scheme), {.threads = 3});
+    const Measures one = measure(surface_of(mesh, scheme), {}, {.threads = 1});
+    const Measures three = measure(surface_of(mesh, scheme), {}, {.threads = 3});
     EXPECT_EQ(one.area, three.area);
     EXPECT_EQ(one.volume, three.volume);
     EXPECT_EQ(one.inertia, three.inertia);
@@ -320,13 +320,13 @@ TEST(measure, holds_within_any_budget) {
   for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
     const Measures fine = measure(surface_of(mesh, scheme));
     for (const std::uint64_t budget : {0, 20, 200, 2000}) {
-      const Measures found = measure(surface_of(mesh, scheme), {.budget = budget});
+      const Measures found = measure(surface_of(mesh, scheme), {}, {.max_splits = budget});
       EXPECT_LE(found.splits, budget);
       EXPECT_LE(found.area.lower, fine.area.lower);
       EXPECT_GE(found.area.upper, fine.area.upper);
       EXPECT_TRUE(std::isfinite(found.area.upper));
       expect_same(*found.volume, *fine.volume, 1, "volume");
-      EXPECT_TRUE(budget > 20 || !found.reached);
+      EXPECT_TRUE(budget > 20 || found.outcome == Outcome::budget_spent);
     }
   }
 }
@@ -354,7 +354,8 @@ TEST(measure, refuses_what_has_no_answer) {
   EXPECT_NE(problem([&] { (void)measure(surface_of(huge, Scheme::catmark)); }).find("fits a double"),
             std::string::npos);
   std::atomic<bool> stop{true};
-  EXPECT_THROW((void)measure(cube, {}, {.on_progress = {}, .stop = &stop}), Interrupted);
+  const WorkMonitor monitor{.on_progress = {}, .stop = &stop};
+  EXPECT_THROW((void)measure(cube, {}, {.monitor = &monitor}), Interrupted);
 }
 
 TEST(measure, holds_for_disguises) {
@@ -367,7 +368,7 @@ TEST(measure, holds_for_disguises) {
       for (oracle::Point& p : mesh.points) p = change(p);
       Measures found;
       try {
-        found = measure(surface_of(mesh, scheme), {.budget = 5'000});
+        found = measure(surface_of(mesh, scheme), {}, {.max_splits = 5'000});
       } catch (const InputError& error) {
         EXPECT_EQ(error.problem(), InputProblem::unrepresentable) << error.what();
         continue;
@@ -381,7 +382,7 @@ TEST(measure, holds_for_disguises) {
         EXPECT_TRUE(found.volume->contains(0));
       }
       if (name == "flat" && scheme != Scheme::midedge) {
-        EXPECT_TRUE(found.reached);
+        EXPECT_EQ(found.outcome, Outcome::complete);
       }
       if (name == "line" || name == "a single point") {
         EXPECT_LE(found.area.lower, 1e-12);

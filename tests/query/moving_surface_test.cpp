@@ -29,10 +29,11 @@ std::vector<Point3> wave(const std::vector<Point3>& rest, double time) {
 // All that is asked about a surface, in numbers.
 std::vector<double> answers(const Surface& surface, const Surface& other, Workspace& workspace) {
   const PlacedSurface beside = other.at(Motion::translation({0.7 * other.size(), 0, 0}));
-  const ClosestPoint closest = closest_point(surface, {1, 2, 3}, {.relative = 1e-6}, {}, workspace);
-  const Distance apart = distance(surface, beside, {.relative = 1e-3}, {}, workspace);
-  const Collision contact = collide(surface, beside, {.tolerance = 1e-4}, {}, workspace);
-  const RayHits hits = trace(surface, {{10, 0.1, 0.2}, {-1, 0, 0}}, {}, {}, workspace);
+  const ClosestPoint closest =
+      closest_point(surface, {1, 2, 3}, {.relative = 1e-6}, {.workspace = &workspace});
+  const Distance apart = distance(surface, beside, {.relative = 1e-3}, {.workspace = &workspace});
+  const Collision contact = collide(surface, beside, {.tolerance = 1e-4}, {.workspace = &workspace});
+  const RayHits hits = snug::ray(surface, {{10, 0.1, 0.2}, {-1, 0, 0}}, {}, {.workspace = &workspace});
   return {closest.distance.lower,
           closest.distance.upper,
           closest.point.x,

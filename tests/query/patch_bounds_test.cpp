@@ -34,7 +34,7 @@ TEST(enclosures, name_their_patches_and_hold_their_corners) {
       }
     });
     EXPECT_EQ(summary.count, count);
-    EXPECT_TRUE(summary.reached);
+    EXPECT_EQ(summary.outcome, Outcome::complete);
   }
 }
 
@@ -90,8 +90,8 @@ TEST(enclosures, follow_a_mesh_that_moves) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double low = triangles[i].base[0][axis], high = low;
       for (const Point3& p : triangles[i].base) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
-      EXPECT_GE(middle.position[axis], low - triangles[i].radius - middle.error);
-      EXPECT_LE(middle.position[axis], high + triangles[i].radius + middle.error);
+      EXPECT_GE(middle.point[axis], low - triangles[i].radius - middle.error);
+      EXPECT_LE(middle.point[axis], high + triangles[i].radius + middle.error);
     }
   }
   PatchBounds taken = std::move(bounds);
@@ -131,8 +131,8 @@ TEST(enclosures, boxes_in_motion_hold_every_time_in_between) {
                                                   : second ? 0.7
                                                            : 0.2});
           for (std::size_t k = 0; k < 3; ++k) {
-            EXPECT_LE(boxes[i].lower[k], at.position[k] + at.error + rounding) << testing::name_of(journey);
-            EXPECT_GE(boxes[i].upper[k], at.position[k] - at.error - rounding) << testing::name_of(journey);
+            EXPECT_LE(boxes[i].lower[k], at.point[k] + at.error + rounding) << testing::name_of(journey);
+            EXPECT_GE(boxes[i].upper[k], at.point[k] - at.error - rounding) << testing::name_of(journey);
           }
         }
       }

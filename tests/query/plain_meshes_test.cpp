@@ -118,7 +118,7 @@ TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
     precision.relative = 1e-9;
     precision.absolute = 1e-9;
     const Distance found = distance(one.at(), other.at(moved_by(by)), precision);
-    EXPECT_TRUE(found.reached) << trial;
+    EXPECT_EQ(found.outcome, Outcome::complete) << trial;
     if (truth.meet) {
       ++met;
       pierced += truth.pierce;
@@ -159,11 +159,11 @@ TEST(flat, closest_points_are_those_of_the_triangles) {
     for (int k = 0; k < 20; ++k) {
       const ExactPoint at = random_point(random);
       const Point3 q{static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
-      ClosestOptions options;
+      Precision options;
       options.relative = options.absolute = 1e-9;
       const ClosestPoint found = closest_point(body.scratch, q, options);
       const mpq_class square = twin.squared_distance({q.x, q.y, q.z});
-      EXPECT_TRUE(found.reached);
+      EXPECT_EQ(found.outcome, Outcome::complete);
       EXPECT_LE(mpq_class(found.distance.lower) * mpq_class(found.distance.lower), square) << trial;
       EXPECT_GE(mpq_class(found.distance.upper) * mpq_class(found.distance.upper), square) << trial;
     }
@@ -248,7 +248,7 @@ TEST(bilinear, points_are_those_of_the_quads) {
           const mpq_class below = quad[0][x] + exact_u * (quad[1][x] - quad[0][x]),
                           above = quad[3][x] + exact_u * (quad[2][x] - quad[3][x]),
                           exact = below + exact_v * (above - below);
-          const double off = std::fabs(mpq_class(exact - mpq_class(point.position[x])).get_d());
+          const double off = std::fabs(mpq_class(exact - mpq_class(point.point[x])).get_d());
           EXPECT_LE(off, point.error) << size << ' ' << corner << ' ' << u << ' ' << v;
           EXPECT_LE(point.error, 1e-11);
           const mpq_class along =
@@ -405,7 +405,7 @@ TEST(plain_meshes, are_as_far_from_surfaces_of_every_scheme_as_their_samples_say
     const DistanceOptions precision{.absolute = 1e-4 * factor};
     const Distance found = distance(a.at(), b.at(), precision),
                    same = distance(sharp.at(), b.at(), precision);
-    EXPECT_TRUE(found.reached) << where;
+    EXPECT_EQ(found.outcome, Outcome::complete) << where;
     EXPECT_LE(found.distance.lower, same.distance.upper * (1 + 1e-12)) << where;
     EXPECT_LE(same.distance.lower, found.distance.upper * (1 + 1e-12)) << where;
     const Verdict verdict = collide(a.at(), b.at(), testing::verdict_only()).verdict;
@@ -468,7 +468,7 @@ TEST(plain_meshes, of_both_schemes_are_as_far_apart_as_their_sharp_twins) {
     const DistanceOptions precision{.absolute = 1e-6};
     const Distance found = distance(a.at(), b.at(), precision),
                    same = distance(sharp_a.at(), sharp_b.at(), precision);
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
     EXPECT_LE(found.distance.lower, same.distance.upper * (1 + 1e-12)) << trial;
     EXPECT_LE(same.distance.lower, found.distance.upper * (1 + 1e-12)) << trial;
     const bool separated = collide(a.at(), b.at(), testing::verdict_only()).verdict == Verdict::separated;

@@ -71,16 +71,18 @@ TEST_F(poses, are_asked_once_each_and_never_by_two_threads_in_one_scratch) {
   std::vector<std::atomic<int>> asked(1000);
   std::mutex guard;
   std::set<const SurfaceWorkspace*> busy;
-  scratches.for_each(asked.size(), [&](SurfaceWorkspace& x, SurfaceWorkspace&, std::size_t i) {
-    {
-      const std::lock_guard lock(guard);
-      EXPECT_TRUE(busy.insert(&x).second);
-    }
-    ++asked[i];
-    std::this_thread::sleep_for(std::chrono::microseconds(100));  // lets the others in
-    const std::lock_guard lock(guard);
-    busy.erase(&x);
-  });
+  scratches.for_each(asked.size(),
+                     [&](SurfaceWorkspace& x, SurfaceWorkspace&, std::size_t i) {
+                       {
+                         const std::lock_guard lock(guard);
+                         EXPECT_TRUE(busy.insert(&x).second);
+                       }
+                       ++asked[i];
+                       std::this_thread::sleep_for(std::chrono::microseconds(100));  // lets the others in
+                       const std::lock_guard lock(guard);
+                       busy.erase(&x);
+                     },
+                     {});
   for (const auto& count : asked) ASSERT_EQ(count, 1);
 }
 
@@ -91,7 +93,8 @@ TEST_F(poses, an_error_ends_all) {
                                   [&](SurfaceWorkspace&, SurfaceWorkspace&, std::size_t i) {
                                     ++asked;
                                     if (i == 1000) throw InputError(InputProblem::value, "here");
-                                  }),
+                                  },
+                                  {}),
                InputError);
   EXPECT_LT(asked, 1'000'000);
   EXPECT_THROW(static_cast<void>(scratches.answers(collide, list, CollideOptions{.tolerance = -1})),
@@ -100,9 +103,9 @@ TEST_F(poses, an_error_ends_all) {
 
 TEST_F(poses, stop_when_asked) {
   std::atomic<bool> stop{true};
+  const WorkMonitor monitor{.on_progress = {}, .stop = &stop};
   PairWorkspaces scratches(a, b, 2);
-  EXPECT_THROW(static_cast<void>(
-                   scratches.answers(collide, list, CollideOptions{}, {.on_progress = {}, .stop = &stop})),
+  EXPECT_THROW(static_cast<void>(scratches.answers(collide, list, CollideOptions{}, {.monitor = &monitor})),
                Interrupted);
 }
 

@@ -63,7 +63,7 @@ TEST(handles, answer_with_the_bits_of_the_rooms_inside) {
   EXPECT_TRUE(apart && meet);
   const Point3 q{1, 2, 3};
   EXPECT_EQ(closest_point(a, q).distance, closest_point(in_a.pieces, q, {}).distance);
-  EXPECT_EQ(closest_points(a, std::vector{q})[0].point, closest_point(a, q).point);
+  EXPECT_EQ(closest_point(a, std::vector{q})[0].point, closest_point(a, q).point);
 }
 
 TEST(handles, reach_their_default_precision) {
@@ -71,7 +71,7 @@ TEST(handles, reach_their_default_precision) {
   const double size = std::max(a.size(), b.size());
   const Motion beside = Motion::translation({2 * size, 0, 0});
   const Distance gap = distance(a, b.at(beside));
-  EXPECT_TRUE(gap.reached);
+  EXPECT_EQ(gap.outcome, Outcome::complete);
   EXPECT_LE(gap.distance.upper - gap.distance.lower, 1e-4 * size);
   const Collision hit = collide(a, b.at(beside));
   EXPECT_EQ(hit.verdict, Verdict::separated);
@@ -119,11 +119,11 @@ TEST(handles, know_inside_from_outside) {
   const SignedDistance signed_one = signed_distance(ball, middle);
   ASSERT_TRUE(inside.has_value());
   EXPECT_EQ(*inside, signed_one.distance.upper < 0);
-  EXPECT_EQ(signed_distances(ball, std::vector{middle})[0].distance, signed_one.distance);
+  EXPECT_EQ(signed_distance(ball, std::vector{middle})[0].distance, signed_one.distance);
   EXPECT_EQ(contains(ball, {1e3, 0, 0}), false);
   const std::vector<Point3> several{middle, {1e3, 0, 0}, {0, 1e-3, 0}};
   for (const int threads : {1, 2}) {
-    const std::vector<std::optional<bool>> answers = contains(ball, several, threads);
+    const std::vector<std::optional<bool>> answers = contains(ball, several, {.threads = threads});
     ASSERT_EQ(answers.size(), several.size());
     for (std::size_t i = 0; i < several.size(); ++i) EXPECT_EQ(answers[i], contains(ball, several[i]));
   }
@@ -139,16 +139,16 @@ TEST(handles, know_inside_from_outside) {
 
 TEST(handles, evaluate_refine_and_measure) {
   const Surface a = load(model("star.obj"));
-  const SurfaceParameter at{3, 0, 0.25, 0.5};
+  const Place at{3, 0, 0.25, 0.5};
   const SurfacePoint point = evaluate(a, at);
-  EXPECT_EQ(evaluate(a, std::vector{at, at})[1].position, point.position);
+  EXPECT_EQ(evaluate(a, std::vector{at, at})[1].point, point.point);
   std::array<float, 6> positions{}, normals{};
   const double error = evaluate(a, std::vector{at, at}, {positions, normals});
   for (std::size_t x = 0; x < 3; ++x) {
-    EXPECT_NEAR(positions[3 + x], point.position[x], error);
+    EXPECT_NEAR(positions[3 + x], point.point[x], error);
     EXPECT_NEAR(normals[3 + x], point.normal.value()[x], 0x1p-24);
   }
-  EXPECT_LE(closest_point(a, point.position, {.absolute = 1e-9}).distance.lower, point.error * 2);
+  EXPECT_LE(closest_point(a, point.point, {.absolute = 1e-9}).distance.lower, point.error * 2);
   const std::optional<SurfaceNormal> normal =
       normal_at(a.at(Motion::rotation({0, 0, 1}, std::numbers::pi / 2)), at);
   ASSERT_TRUE(normal && point.normal);
@@ -200,7 +200,8 @@ TEST(handles, are_prepared_once) {
   EXPECT_GT(a.bytes(), before);
   std::atomic<bool> stop{true};
   const Surface b = load(model("pawn.obj"));
-  EXPECT_THROW(b.prepare({.on_progress = {}, .stop = &stop}), Interrupted);
+  const WorkMonitor monitor{.on_progress = {}, .stop = &stop};
+  EXPECT_THROW(b.prepare({.monitor = &monitor}), Interrupted);
   EXPECT_EQ(collide(a, b).verdict, Verdict::within);  // prepared after all
   ControlMesh triangle;
   triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

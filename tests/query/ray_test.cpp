@@ -1,4 +1,4 @@
-// Rays against limit surfaces: what trace() promises, on small models.
+// Rays against limit surfaces: what ray() promises, on small models.
 
 #include <snug/snug.h>
 
@@ -45,20 +45,20 @@ Surface sharp_cube() {
 
 TEST(trace, finds_both_sides_of_a_cube) {
   const Surface surface = sharp_cube();
-  const RayHits all = trace(surface, {{0.3, 0.4, 5}, {0, 0, -2}}, {.query = RayQuery::all});
+  const RayHits all = snug::ray(surface, {{0.3, 0.4, 5}, {0, 0, -2}}, {.query = RayQuery::all});
   ASSERT_EQ(all.hits.size(), 2u);
-  EXPECT_TRUE(all.complete);
+  EXPECT_EQ(all.outcome, Outcome::complete);
   EXPECT_TRUE(all.hits[0].t.contains(2) && all.hits[1].t.contains(2.5));
   EXPECT_EQ(all.hits[0].side, -1);
   EXPECT_EQ(all.hits[1].side, 1);
   for (const RayHit& hit : all.hits) {
     EXPECT_TRUE(hit.certified);
     EXPECT_LE(hit.t.upper - hit.t.lower, 1e-6);
-    const SurfacePoint there = evaluate(surface, hit.at);
-    EXPECT_NEAR(there.position.x, 0.3, 1e-9);
-    EXPECT_NEAR(there.position.z, hit.point.z, 1e-9);
+    const SurfacePoint there = evaluate(surface, *hit.at);
+    EXPECT_NEAR(there.point.x, 0.3, 1e-9);
+    EXPECT_NEAR(there.point.z, hit.point.z, 1e-9);
   }
-  const RayHits nearest = trace(surface, {{0.3, 0.4, 5}, {0, 0, -2}});
+  const RayHits nearest = snug::ray(surface, {{0.3, 0.4, 5}, {0, 0, -2}});
   ASSERT_EQ(nearest.hits.size(), 1u);
   EXPECT_TRUE(nearest.hits[0].t.contains(2));
 }
@@ -71,7 +71,7 @@ TEST(trace, passes_no_edge_and_no_vertex) {
     if (i == 13) continue;
     const Ray ray{inside, {to.x - inside.x, to.y - inside.y, to.z - inside.z}};
     for (const RayQuery query : {RayQuery::nearest, RayQuery::any, RayQuery::all}) {
-      const RayHits found = trace(surface, ray, {.query = query});
+      const RayHits found = snug::ray(surface, ray, {.query = query});
       ASSERT_EQ(found.hits.size(), 1u) << i;
       EXPECT_TRUE(found.hits[0].certified && found.hits[0].t.contains(1)) << i;
       EXPECT_EQ(found.hits[0].side, 1) << i;
@@ -84,10 +84,10 @@ TEST(trace, says_where_it_cannot_tell) {
   // Along an edge's line, touching it, and in the plane of a face.
   for (const Ray& ray :
        {Ray{{-1, -1, 0}, {1, 1, 0}}, Ray{{-1, 1, 0.5}, {1, -1, 0}}, Ray{{-1, 0.5, 1}, {1, 0, 0}}}) {
-    const RayHits found = trace(surface, ray, {.query = RayQuery::all});
+    const RayHits found = snug::ray(surface, ray, {.query = RayQuery::all});
     EXPECT_FALSE(found.certain_miss());
   }
-  const RayHits touching = trace(surface, {{-0.5, 0.5, 0.5}, {1, -1, 0}});
+  const RayHits touching = snug::ray(surface, {{-0.5, 0.5, 0.5}, {1, -1, 0}});
   ASSERT_FALSE(touching.hits.empty());
   EXPECT_FALSE(touching.certain_hit());
   EXPECT_TRUE(touching.hits[0].t.contains(0.5));
@@ -96,7 +96,7 @@ TEST(trace, says_where_it_cannot_tell) {
 TEST(trace, knows_the_ends_of_segments) {
   const Surface surface = sharp_cube();
   const auto hits = [&](double from, double to) {
-    return trace(surface, {{0.3, 0.4, 5}, {0, 0, -1}, from, to}, {.query = RayQuery::all});
+    return snug::ray(surface, {{0.3, 0.4, 5}, {0, 0, -1}, from, to}, {.query = RayQuery::all});
   };
   EXPECT_TRUE(hits(0, 3.9).certain_miss());
   EXPECT_EQ(hits(0, 4.1).hits.size(), 1u);
@@ -115,9 +115,10 @@ TEST(trace, refuses_what_is_no_ray) {
        {Ray{{nan, 0, 0}, {1, 0, 0}}, Ray{{0, 0, 0}, {0, 0, 0}}, Ray{{0, 0, 0}, {infinity, 0, 0}},
         Ray{{0, 0, 0}, {1, 0, 0}, 2, 1}, Ray{{0, 0, 0}, {1, 0, 0}, nan, 1},
         Ray{{0, 0, 0}, {1, 0, 0}, -infinity, 1}, Ray{{1e30, 0, 0}, {1, 0, 0}}}) {
-    EXPECT_THROW(static_cast<void>(trace(surface, ray)), InputError);
+    EXPECT_THROW(static_cast<void>(snug::ray(surface, ray)), InputError);
   }
-  EXPECT_THROW(static_cast<void>(trace(surface, Ray{{0, 0, 5}, {0, 0, -1}}, {.precision = -1})), InputError);
+  EXPECT_THROW(static_cast<void>(snug::ray(surface, Ray{{0, 0, 5}, {0, 0, -1}}, {.absolute = -1})),
+               InputError);
 }
 
 TEST(trace, answers_the_same_for_any_threads_and_order) {
@@ -128,9 +129,10 @@ TEST(trace, answers_the_same_for_any_threads_and_order) {
     const Point3 from{5 * std::cos(a), 5 * std::sin(a), std::sin(b)};
     rays.push_back({from, {0.3 * std::sin(b) - from.x, 0.2 * std::cos(b) - from.y, -from.z}});
   }
-  const std::vector<RayHits> one = trace(surface, rays, {}, 1), two = trace(surface, rays, {}, 2);
+  const std::vector<RayHits> one = snug::ray(surface, rays, {}, {.threads = 1}),
+                             two = snug::ray(surface, rays, {}, {.threads = 2});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const RayHits alone = trace(surface, rays[rays.size() - 1 - i]);
+    const RayHits alone = snug::ray(surface, rays[rays.size() - 1 - i]);
     const RayHits& same = one[rays.size() - 1 - i];
     ASSERT_EQ(one[i].hits.size(), two[i].hits.size());
     ASSERT_EQ(alone.hits.size(), same.hits.size());

@@ -25,7 +25,7 @@ Surface surface_of(const oracle::TwinMesh& twin, double size = 1) {
   for (const auto& face : twin.triangles) {
     mesh.add_face(std::array{VertexId(face[0]), VertexId(face[1]), VertexId(face[2])});
   }
-  return Surface(std::move(mesh), {.threads = 1});
+  return Surface(std::move(mesh), {}, {.threads = 1});
 }
 
 // The cube [0, 1]^3, its faces as they are.
@@ -41,7 +41,7 @@ Surface cube() {
     mesh.add_face(std::array{VertexId(face[0]), VertexId(face[1]), VertexId(face[2])});
     mesh.add_face(std::array{VertexId(face[0]), VertexId(face[2]), VertexId(face[3])});
   }
-  return Surface(std::move(mesh), {.scheme = Scheme::flat, .threads = 1});
+  return Surface(std::move(mesh), {.scheme = Scheme::flat}, {.threads = 1});
 }
 
 Scene random_scene(std::mt19937_64& random, std::size_t parts, double spread) {
@@ -73,29 +73,23 @@ double margin_of(const Scene& scene, const PartPair& pair, double margin) {
 }
 
 bool same(const Collision& x, const Collision& y) {
-  const auto same_place = [](const std::optional<SurfaceParameter>& p,
-                             const std::optional<SurfaceParameter>& q) {
-    return p.has_value() == q.has_value() &&
-           (!p || (p->owner == q->owner && p->corner == q->corner && p->u == q->u && p->v == q->v));
-  };
   const SearchStats &s = x.stats, &t = y.stats;
   return x.verdict == y.verdict && x.distance == y.distance && x.witness == y.witness &&
-         x.witness_error == y.witness_error && same_place(x.at[0], y.at[0]) && same_place(x.at[1], y.at[1]) &&
-         x.inner == y.inner && s.box_tests == t.box_tests && s.triangle_tests == t.triangle_tests &&
-         s.evaluations == t.evaluations && s.splits == t.splits;
+         x.contained == y.contained && x.outcome == y.outcome && s.box_tests == t.box_tests &&
+         s.triangle_tests == t.triangle_tests && s.evaluations == t.evaluations && s.splits == t.splits;
 }
 
 // Every pair by itself, with no broad phase.
-void expect_all_pairs(const Scene& scene, const CollideOptions& options, int threads) {
+void expect_all_pairs(const Scene& scene, const CollideOptions& options, const Run& run) {
   std::vector<PairCollision> found;
   const SceneCounts counts = collide(
-      scene, options, [&](const PairCollision& pair) { found.push_back(pair); }, threads);
+      scene, options, [&](const PairCollision& pair) { found.push_back(pair); }, run);
   std::size_t next = 0;
   SceneCounts expected;
   for (const PartPair& pair : pairs_of(scene)) {
     CollideOptions own = options;
     own.margin = margin_of(scene, pair, options.margin);
-    const Collision answer = collide(scene.parts[pair.a], scene.parts[pair.b], own);
+    const Collision answer = collide(scene.parts[pair.a], scene.parts[pair.b], own, run);
     ++expected.pairs;
     if (next < found.size() && found[next].parts == pair) {
       ASSERT_TRUE(same(found[next].answer, answer)) << pair.a << ' ' << pair.b;
@@ -139,8 +133,8 @@ TEST(scene, answers_as_every_pair_by_itself) {
           scene.margins.push_back({pair, i % 3 == 0 ? 0 : spread});
         }
         for (const bool solid : {false, true}) {
-          expect_all_pairs(scene, {.tolerance = 0.01, .margin = margin, .budget = 500, .solid = solid},
-                           1 + int(random() % 3));
+          expect_all_pairs(scene, {.tolerance = 0.01, .margin = margin, .solid = solid},
+                           {.threads = 1 + int(random() % 3), .max_splits = 500});
           if (HasFatalFailure()) return;
         }
       }
@@ -157,9 +151,10 @@ std::vector<Surface> surfaces_of_every_sort(std::uint64_t seed) {
     const double size = sizes[surfaces.size() % std::size(sizes)];
     for (Point3& p : mesh.points) p = {size * p.x, size * p.y, size * p.z};
     try {
-      const Surface surface(std::move(mesh), {.scheme = named.surface.options().scheme,
-                                              .boundary = named.surface.options().boundary,
-                                              .threads = 1});
+      const Surface surface(
+          std::move(mesh),
+          {.scheme = named.surface.options().scheme, .boundary = named.surface.options().boundary},
+          {.threads = 1});
       static_cast<void>(surface.data()->bvh());
       surfaces.push_back(surface);
     } catch (const InputError&) {
@@ -206,10 +201,9 @@ TEST(scene, answers_as_every_pair_by_itself_whatever_the_parts_are) {
     }
     const CollideOptions options{.tolerance = trial % 3 == 0 ? 0.1 : 1e-3,
                                  .margin = margins[random() % std::size(margins)],
-                                 .budget = 60,
                                  .prove_contact = trial % 2 == 0,
                                  .measure = trial % 5 != 0};
-    expect_all_pairs(scene, options, 1 + int(random() % 2));
+    expect_all_pairs(scene, options, {.threads = 1 + int(random() % 2), .max_splits = 60});
     if (HasFatalFailure()) FAIL() << trial << ' ' << spread;
   }
 }
@@ -222,7 +216,7 @@ TEST(scene, distances_are_those_of_every_pair_by_itself) {
     std::size_t next = 0;
     std::vector<PairDistance> found;
     const SceneCounts counts = distance(
-        scene, limit, options, [&](const PairDistance& pair) { found.push_back(pair); }, 2);
+        scene, limit, options, [&](const PairDistance& pair) { found.push_back(pair); }, {.threads = 2});
     for (const PartPair& pair : pairs_of(scene)) {
       const Distance answer = distance(scene.parts[pair.a], scene.parts[pair.b], options);
       if (next < found.size() && found[next].parts == pair) {
@@ -388,25 +382,25 @@ TEST(scene, a_thousand_equal_parts_are_answered_soon) {
     return std::array{place(parts.a), place(parts.b), parts == PartPair{3, 4} ? 1 : 0};
   };
   std::uint64_t seen = 0;
-  const SceneCounts counts = collide(
-      scene, options,
-      [&](const PairCollision& pair) {
-        const auto [known, fresh] = kinds.try_emplace(kind_of(pair.parts));
-        if (fresh) {
-          CollideOptions own = options;
-          if (known->first[2] != 0) own.margin = 0.5;
-          known->second = collide(scene.parts[pair.parts.a], scene.parts[pair.parts.b], own);
-        }
-        if (same(pair.answer, known->second)) ++seen;
-      },
-      2);
+  const SceneCounts counts =
+      collide(scene, options,
+              [&](const PairCollision& pair) {
+                const auto [known, fresh] = kinds.try_emplace(kind_of(pair.parts));
+                if (fresh) {
+                  CollideOptions own = options;
+                  if (known->first[2] != 0) own.margin = 0.5;
+                  known->second = collide(scene.parts[pair.parts.a], scene.parts[pair.parts.b], own);
+                }
+                if (same(pair.answer, known->second)) ++seen;
+              },
+              {.threads = 2});
   EXPECT_EQ(kinds.size(), 7u);
   EXPECT_EQ(seen, 499'500u);
   EXPECT_EQ(counts.pairs, seen);
   EXPECT_EQ(counts.separated_by_boxes + counts.separated + counts.undecided, 0u);
   std::uint64_t near = 0;
-  const SceneCounts distances = distance(
-      scene, 0.5, {.absolute = 1e-3}, [&](const PairDistance&) { ++near; }, 2);
+  const SceneCounts distances =
+      distance(scene, 0.5, {.absolute = 1e-3}, [&](const PairDistance&) { ++near; }, {.threads = 2});
   EXPECT_EQ(near, 499'500u);
   EXPECT_EQ(distances.within + distances.intersecting, near);
 }
@@ -415,7 +409,7 @@ TEST(broad_phase, does_not_depend_on_threads) {
   std::mt19937_64 random(84);
   const Scene scene = random_scene(random, 3000, 20);
   const auto all = [&](int threads) {
-    SceneBroadPhase pairs(scene, 0.1, false, threads);
+    SceneBroadPhase pairs(scene, 0.1, false, {.threads = threads});
     std::vector<PartPair> result;
     for (std::vector<ScenePair> batch; !(batch = pairs.next(777)).empty();) {
       for (const ScenePair& pair : batch) result.push_back(pair.parts);
@@ -467,8 +461,7 @@ TEST(scene, names_the_pair_margin_or_part_that_is_wrong) {
   open.face_vertices.resize(open.face_offsets.back());
   scene.parts.emplace_back(Surface(open, {.scheme = Scheme::flat}));
   try {
-    collide(
-        scene, {.solid = true}, [](const PairCollision&) {}, 1);
+    collide(scene, {.solid = true}, [](const PairCollision&) {}, {.threads = 1});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("parts 0 and 3"), std::string::npos) << error.what();
@@ -479,18 +472,17 @@ TEST(scene, ends_where_the_sink_throws_or_a_stop_is_requested) {
   Scene scene;
   scene.parts.assign(40, cube());
   int taken = 0;
-  EXPECT_THROW(collide(
-                   scene, {},
-                   [&](const PairCollision&) {
-                     if (++taken == 5) throw std::runtime_error("full");
-                   },
-                   2),
+  EXPECT_THROW(collide(scene, {},
+                       [&](const PairCollision&) {
+                         if (++taken == 5) throw std::runtime_error("full");
+                       },
+                       {.threads = 2}),
                std::runtime_error);
   EXPECT_EQ(taken, 5);
   const std::atomic<bool> stop{true};
-  EXPECT_THROW(
-      collide(scene, {}, [](const PairCollision&) { FAIL(); }, 2, {.on_progress = {}, .stop = &stop}),
-      Interrupted);
+  const WorkMonitor monitor{.on_progress = {}, .stop = &stop};
+  EXPECT_THROW(collide(scene, {}, [](const PairCollision&) { FAIL(); }, {.threads = 2, .monitor = &monitor}),
+               Interrupted);
 }
 
 }  // namespace

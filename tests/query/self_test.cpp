@@ -1,10 +1,10 @@
 // self_contact(): clear, crossing, touching and collapsed shapes; what does not change the answer.
 
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/error.h>
+#include <snug/run.h>
 #include <testing/closed_meshes.h>
 #include <testing/tagged.h>
 
@@ -17,8 +17,9 @@ namespace {
 
 namespace meshes = oracle::meshes;
 
-SelfContact ask(const oracle::TaggedMesh& mesh, Scheme scheme, const SelfContactOptions& options = {}) {
-  return self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), options);
+SelfContact ask(const oracle::TaggedMesh& mesh, Scheme scheme, const SelfContactOptions& options = {},
+                const Run& run = {}) {
+  return self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), options, run);
 }
 
 // A tube around a figure of eight that passes itself at this height; radius 0.3, or less.
@@ -96,8 +97,8 @@ TEST(self_contact, tubes_cross_where_they_meet) {
           EXPECT_EQ(found.verdict, SelfVerdict::intersecting) << name;
           ASSERT_FALSE(found.pairs.empty());
           const SelfContactPair& pair = found.pairs.front();
-          EXPECT_LT(std::hypot(pair.points[0].x, pair.points[0].y), 1) << name;
-          EXPECT_LT(length(pair.points[1] - pair.points[0]), 0.2) << name;
+          EXPECT_LT(std::hypot(pair.points[0].point.x, pair.points[0].point.y), 1) << name;
+          EXPECT_LT(length(pair.points[1].point - pair.points[0].point), 0.2) << name;
           EXPECT_EQ(pair.distance.upper, 0) << name;
         } else if (scheme != Scheme::doo_sabin && scheme != Scheme::midedge) {
           EXPECT_EQ(found.verdict, SelfVerdict::clear) << name;
@@ -129,7 +130,7 @@ TEST(self_contact, two_bodies_in_each_other_apart_or_in_one_place) {
   for (const Scheme scheme : schemes_of(cube)) {
     EXPECT_EQ(ask(both(cube, cube, 0.3), scheme).verdict, SelfVerdict::intersecting) << name_of(scheme);
     EXPECT_NE(ask(both(cube, cube, 1.3), scheme).verdict, SelfVerdict::intersecting) << name_of(scheme);
-    EXPECT_NE(ask(both(cube, cube, 0), scheme, {.budget = 20'000}).verdict, SelfVerdict::clear)
+    EXPECT_NE(ask(both(cube, cube, 0), scheme, {}, {.max_splits = 20'000}).verdict, SelfVerdict::clear)
         << name_of(scheme);
   }
   EXPECT_EQ(ask(both(cube, cube, 1.3), Scheme::catmark).verdict, SelfVerdict::clear);
@@ -154,7 +155,8 @@ TEST(self_contact, what_touches_is_never_clear) {
       crease.b += 8;
       pair.creases.push_back(crease);
     }
-    EXPECT_NE(ask(pair, Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear) << dy << " " << dz;
+    EXPECT_NE(ask(pair, Scheme::catmark, {}, {.max_splits = 20'000}).verdict, SelfVerdict::clear)
+        << dy << " " << dz;
   }
 }
 
@@ -163,12 +165,14 @@ TEST(self_contact, collapsed_and_pinched_meshes_are_undecided) {
   for (auto& p : point.points) p = {1, 1, 1};
   for (auto& p : flat.points) p[2] = 0;
   for (const Scheme scheme : schemes_of(point)) {
-    EXPECT_EQ(ask(point, scheme, {.budget = 2000}).verdict, SelfVerdict::undecided) << name_of(scheme);
-    EXPECT_NE(ask(flat, scheme, {.budget = 20'000}).verdict, SelfVerdict::clear) << name_of(scheme);
+    EXPECT_EQ(ask(point, scheme, {}, {.max_splits = 2000}).verdict, SelfVerdict::undecided)
+        << name_of(scheme);
+    EXPECT_NE(ask(flat, scheme, {}, {.max_splits = 20'000}).verdict, SelfVerdict::clear) << name_of(scheme);
   }
   EXPECT_EQ(ask(meshes::two_cubes_at_a_vertex(), Scheme::catmark).verdict, SelfVerdict::undecided);
-  EXPECT_NE(ask(meshes::back_to_back(), Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear);
-  EXPECT_NE(ask(meshes::book(3), Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear);
+  EXPECT_NE(ask(meshes::back_to_back(), Scheme::catmark, {}, {.max_splits = 20'000}).verdict,
+            SelfVerdict::clear);
+  EXPECT_NE(ask(meshes::book(3), Scheme::catmark, {}, {.max_splits = 20'000}).verdict, SelfVerdict::clear);
 }
 
 // Two faces with one vertex in common, in one plane, one turned against the other: they overlap, though each one's
@@ -194,7 +198,7 @@ TEST(self_contact, faces_that_only_have_a_vertex_in_common_are_no_fan) {
             mesh.polygons.push_back({0, a, a + 1, a + 2});
           }
         }
-        const SelfVerdict verdict = ask(mesh, scheme, {.budget = 20'000}).verdict;
+        const SelfVerdict verdict = ask(mesh, scheme, {}, {.max_splits = 20'000}).verdict;
         if (turn < 90) {
           EXPECT_NE(verdict, SelfVerdict::clear) << name_of(scheme) << " turned by " << turn;
         }
@@ -207,8 +211,8 @@ TEST(self_contact, faces_that_only_have_a_vertex_in_common_are_no_fan) {
 TEST(self_contact, does_not_depend_on_threads_scale_or_place) {
   for (const double height : {0.1, 1.5}) {
     const oracle::TaggedMesh mesh = eight(height, true);
-    const SelfContact one = ask(mesh, Scheme::loop, {.threads = 1});
-    const SelfContact four = ask(mesh, Scheme::loop, {.threads = 4});
+    const SelfContact one = ask(mesh, Scheme::loop, {}, {.threads = 1});
+    const SelfContact four = ask(mesh, Scheme::loop, {}, {.threads = 4});
     EXPECT_EQ(one.verdict, four.verdict);
     EXPECT_EQ(one.stars, four.stars);
     EXPECT_EQ(one.pair_tests, four.pair_tests);
@@ -230,7 +234,27 @@ TEST(self_contact, refuses_what_it_cannot_do) {
                      {.scheme = Scheme::catmark, .boundary = BoundaryRule::none});
   EXPECT_THROW(static_cast<void>(self_contact(none)), InputError);
   // Without a budget nothing is decided.
-  EXPECT_EQ(ask(meshes::cube(), Scheme::catmark, {.budget = 0}).verdict, SelfVerdict::undecided);
+  const SelfContact nothing = ask(meshes::cube(), Scheme::catmark, {}, {.max_splits = 0});
+  EXPECT_EQ(nothing.verdict, SelfVerdict::undecided);
+  EXPECT_EQ(nothing.outcome, Outcome::budget_spent);
+}
+
+// Two pyramids with a common apex: no level proves that they only touch there.
+TEST(self_contact, outcomes_say_whether_a_larger_budget_helps) {
+  oracle::TaggedMesh pyramids = meshes::cube();
+  const SelfContact budget = ask(pyramids, Scheme::catmark, {.within = 0.2}, {.max_splits = 300});
+  EXPECT_EQ(budget.verdict, SelfVerdict::undecided);
+  EXPECT_EQ(budget.outcome, Outcome::budget_spent);
+  EXPECT_EQ(ask(pyramids, Scheme::catmark, {.within = 0.2}).outcome, Outcome::complete);
+  pyramids.points = {{0, 0, 0},  {1, 1, 1},   {-1, 1, 1},   {-1, -1, 1}, {1, -1, 1},
+                     {1, 1, -1}, {-1, 1, -1}, {-1, -1, -1}, {1, -1, -1}};
+  pyramids.polygons = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {4, 3, 2, 1},
+                       {0, 6, 5}, {0, 7, 6}, {0, 8, 7}, {0, 5, 8}, {5, 6, 7, 8}};
+  for (const std::uint64_t splits : {1'000'000u, 10'000'000u}) {
+    const SelfContact levels = ask(pyramids, Scheme::catmark, {.levels = 4}, {.max_splits = splits});
+    EXPECT_EQ(levels.verdict, SelfVerdict::undecided);
+    EXPECT_EQ(levels.outcome, Outcome::at_rounding);
+  }
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ LimitSurface model(const char* file) {
 
 TessellateOptions to_tolerance(double tolerance) {
   TessellateOptions options;
-  options.tolerance = tolerance;
+  options.error = tolerance;
   options.corners = true;
   return options;
 }
@@ -63,7 +63,7 @@ TEST(tessellate, is_watertight_and_near_for_every_scheme_and_tag) {
       testing::expect_watertight(surface, t, named.name);
       if (HasFatalFailure()) return;
       testing::expect_near(surface, t, named.name, 2);
-      EXPECT_TRUE(t.reached);
+      EXPECT_EQ(t.outcome, Outcome::complete);
       EXPECT_LE(t.error_bound, tolerance) << named.name;
       triangles += t.triangles.size();
     }
@@ -149,7 +149,7 @@ TEST(tessellate, holds_a_largest_angle_of_normals) {
     const auto side = [&](std::uint32_t x, std::uint32_t y) {
       return distance(t.positions[x], t.positions[y]);
     };
-    if (std::max({side(p, q), side(q, r), side(r, p)}) <= *options.tolerance) continue;
+    if (std::max({side(p, q), side(q, r), side(r, p)}) <= *options.error) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
       const auto a = evaluate(surface, t.corners[i][k]).normal,
@@ -168,23 +168,22 @@ TEST(tessellate, finds_a_small_error_for_so_many_triangles) {
   const Tessellation t = tessellate(surface, options);
   testing::expect_watertight(surface, t, "pawn");
   testing::expect_near(surface, t, "pawn");
-  EXPECT_TRUE(t.reached);
+  EXPECT_EQ(t.outcome, Outcome::complete);
   EXPECT_LE(t.triangles.size(), 5000u);
   EXPECT_GE(t.triangles.size(), 4000u);
-  options.tolerance = t.error_bound / 10;
-  EXPECT_FALSE(tessellate(surface, options).reached);
-  options.tolerance = t.error_bound * 10;
+  options.error = t.error_bound / 10;
+  EXPECT_EQ(tessellate(surface, options).outcome, Outcome::budget_spent);
+  options.error = t.error_bound * 10;
   const Tessellation loose = tessellate(surface, options);
-  EXPECT_TRUE(loose.reached);
+  EXPECT_EQ(loose.outcome, Outcome::complete);
   EXPECT_LT(loose.triangles.size(), t.triangles.size());
 }
 
 TEST(tessellate, says_what_is_proved_when_the_budget_ends) {
   const LimitSurface surface = model("pawn.obj");
   TessellateOptions options = to_tolerance(1e-5 * surface.size());
-  options.budget = 2000;
-  const Tessellation t = tessellate(surface, options);
-  EXPECT_FALSE(t.reached);
+  const Tessellation t = tessellate(surface, options, {.max_splits = 2000});
+  EXPECT_EQ(t.outcome, Outcome::budget_spent);
   EXPECT_LE(t.triangles.size(), 2000u);
   testing::expect_watertight(surface, t, "pawn");
   testing::expect_near(surface, t, "pawn");
@@ -194,8 +193,7 @@ TEST(tessellate, proves_the_floats_that_it_returns) {
   const LimitSurface surface = model("pawn.obj");
   TessellateOptions options = to_tolerance(1e-6 * surface.size());
   options.single_precision = true;
-  options.budget = 100'000;
-  const Tessellation t = tessellate(surface, options);
+  const Tessellation t = tessellate(surface, options, {.max_splits = 100'000});
   for (const Point3& p : t.positions) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(static_cast<double>(static_cast<float>(p[a])), p[a]);
   }
@@ -206,19 +204,18 @@ TEST(tessellate, proves_the_floats_that_it_returns) {
 TEST(tessellate, refuses_what_it_cannot_hold) {
   const LimitSurface surface = model("pawn.obj");
   TessellateOptions options;
-  EXPECT_NE(refusal(surface, options).find("give a tolerance"), std::string::npos);
-  options.tolerance = -1;
+  EXPECT_NE(refusal(surface, options).find("give error"), std::string::npos);
+  options.error = -1;
   EXPECT_NE(refusal(surface, options).find("finite and positive"), std::string::npos);
-  options.tolerance = NAN;
+  options.error = NAN;
   EXPECT_NE(refusal(surface, options).find("finite and positive"), std::string::npos);
-  options.tolerance = 1e-30;
+  options.error = 1e-30;
   const std::string message = refusal(surface, options);
   const std::size_t at = message.find("take ");
   ASSERT_NE(at, std::string::npos) << message;
   // The named value is taken.
-  options.tolerance = std::stod(message.substr(at + 5));
-  options.budget = 1000;
-  EXPECT_FALSE(tessellate(surface, options).reached);
+  options.error = std::stod(message.substr(at + 5));
+  EXPECT_EQ(tessellate(surface, options, {.max_splits = 1000}).outcome, Outcome::budget_spent);
   options = {};
   options.max_triangles = 10;
   const std::string few = refusal(surface, options);
@@ -238,12 +235,13 @@ TEST(tessellate, is_the_same_of_a_handle) {
 
 TEST(tessellate, stops_when_asked) {
   const std::atomic<bool> stop = true;
-  EXPECT_THROW(static_cast<void>(tessellate(model("pawn.obj"), to_tolerance(1e-3), {{}, &stop})),
+  const WorkMonitor monitor{{}, &stop};
+  EXPECT_THROW(static_cast<void>(tessellate(model("pawn.obj"), to_tolerance(1e-3), {.monitor = &monitor})),
                Interrupted);
 }
 
 // A random point of a triangle, and where the surface has its own one.
-std::pair<SurfaceParameter, Point3> sample(const Tessellation& t, std::size_t i, std::mt19937_64& random) {
+std::pair<Place, Point3> sample(const Tessellation& t, std::size_t i, std::mt19937_64& random) {
   const TriangleParameter at = testing::random_parameter(random);
   const auto mean = [&](double a, double b, double c) { return (1 - at.u - at.v) * a + at.u * b + at.v * c; };
   const auto& c = t.corners[i];
@@ -272,7 +270,7 @@ TEST(tessellate, shows_no_error_from_where_it_is_seen) {
       double largest = 0;
       for (std::size_t i = 0; i < t.triangles.size(); ++i) {
         const auto [there, flat] = sample(t, i, random);
-        const double error = distance(evaluate(surface, there).position, flat),
+        const double error = distance(evaluate(surface, there).point, flat),
                      allowed = slope * distance(flat, options.view->eye);
         EXPECT_LE(error, allowed + 1e-12);
         largest = std::max(largest, error / allowed);
@@ -317,7 +315,7 @@ TEST(tessellate, holds_the_thickness_of_pieces) {
         triangles.push_back({t.positions[x], t.positions[y], t.positions[z]});
       const double within = 3.5 * *options.max_thickness;
       const Deviation found =
-          deviation(SurfaceBvh(surface), triangles, {.absolute = within / 64, .tolerance = within});
+          deviation(SurfaceBvh(surface), triangles, {.absolute = within / 64, .threshold = within});
       EXPECT_LE(found.from_surface.distance.upper, within);
       EXPECT_LE(found.from_candidate.distance.upper, within);
       before = t.triangles.size();
@@ -347,8 +345,7 @@ TEST(tessellate, refuses_eyes_and_thicknesses_that_are_none) {
   // With the eye on the surface the budget ends it.
   options.max_thickness.reset();
   options.view = {tessellate(surface, to_tolerance(surface.size())).positions[0], 0.05};
-  options.budget = 20'000;
-  EXPECT_FALSE(tessellate(surface, options).reached);
+  EXPECT_EQ(tessellate(surface, options, {.max_splits = 20'000}).outcome, Outcome::budget_spent);
 }
 
 }  // namespace

@@ -12,11 +12,9 @@ TEST(tessellate, does_not_depend_on_threads) {
     const LimitSurface surface(read_mesh(testing::models_dir() + "/" + file), {Scheme::catmark},
                                std::make_shared<BoundsCache>());
     TessellateOptions options;
-    options.tolerance = 1e-3 * surface.size();
-    options.threads = 1;
-    const Tessellation one = tessellate(surface, options);
-    options.threads = 3;
-    const Tessellation three = tessellate(surface, options);
+    options.error = 1e-3 * surface.size();
+    const Tessellation one = tessellate(surface, options, {.threads = 1});
+    const Tessellation three = tessellate(surface, options, {.threads = 3});
     EXPECT_EQ(one.positions, three.positions) << file;
     EXPECT_EQ(one.normals, three.normals) << file;
     EXPECT_EQ(one.triangles, three.triangles) << file;

@@ -41,8 +41,8 @@ struct Part {
 };
 
 TimeOfContact ask(Part& a, const Trajectory& motion_a, Part& b, const Trajectory& motion_b,
-                  const TimeOfContactOptions& options = {}) {
-  return time_of_contact({a.model, a.scratch, motion_a}, {b.model, b.scratch, motion_b}, options);
+                  const TimeOfContactOptions& options = {}, const Run& run = {}) {
+  return time_of_contact({a.model, a.scratch, motion_a}, {b.model, b.scratch, motion_b}, options, run);
 }
 
 Trajectory translated(const Vector3& by, const Motion& from = {}) {
@@ -119,7 +119,7 @@ TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
     }
     touched += *first == 0;
     proved += found.verdict == Verdict::intersecting;
-    reached += found.reached;
+    reached += (found.outcome == Outcome::complete);
   }
   std::cout << "  " << met << " meet, " << touched << " at once, " << proved << " proved, " << reached
             << " told to the tolerance; " << missed << " miss\n";
@@ -205,7 +205,7 @@ void check_boxes(const std::array<oracle::Point, 2>& half, const Trajectory& mot
   };
   const double end = std::max(motion_a.duration(), motion_b.duration());
   const std::optional<double> certain = first_overlap(apart, end, 1e-12);
-  checked.looks.push_back(found.looks);
+  checked.looks.push_back(found.steps);
   if (certain) {
     ASSERT_NE(found.verdict, Verdict::separated) << what << ": overlap at " << *certain;
     ASSERT_LE(found.time.lower, *certain) << what;
@@ -231,12 +231,12 @@ void check_boxes(const std::array<oracle::Point, 2>& half, const Trajectory& mot
       ++checked.undecided;
       break;
   }
-  checked.wide += !found.reached;
+  checked.wide += found.outcome != Outcome::complete;
   if (certain) {
     const std::optional<double> deep = first_overlap(apart, end, 20 * tolerance);
     if (deep) {
       EXPECT_NE(found.verdict, Verdict::undecided) << what;
-      EXPECT_TRUE(found.reached) << what;
+      EXPECT_EQ(found.outcome, Outcome::complete) << what;
     }
   }
 }
@@ -432,9 +432,9 @@ TEST(time_of_contact, of_a_rotated_box_is_the_known_one) {
     EXPECT_LE(found.time.lower, exact + 1e-15);
     EXPECT_GE(found.time.upper, exact - 1e-15);
     EXPECT_LE(found.time.upper - found.time.lower, tolerance);
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
     ASSERT_TRUE(found.witness);
-    EXPECT_NEAR((*found.witness)[0].x, 1.2, 2 * tolerance);
+    EXPECT_NEAR((*found.witness)[0].point.x, 1.2, 2 * tolerance);
   }
 }
 
@@ -486,9 +486,10 @@ TEST(time_of_contact, comes_with_points_of_the_time_that_it_names) {
     ASSERT_TRUE(found.witness);
     const Motion back = motion.at(found.time.upper).inverse();
     const std::string what = "trial " + std::to_string(trial);
-    EXPECT_NEAR(max_abs((*found.witness)[0] - Point3{}), 1, 1e-12) << what;
-    EXPECT_NEAR(max_abs(back.apply((*found.witness)[1]) - Point3{}), 1, 1e-12) << what;
-    EXPECT_LE(distance((*found.witness)[0], (*found.witness)[1]), tolerance * (1 + 1e-12)) << what;
+    EXPECT_NEAR(max_abs((*found.witness)[0].point - Point3{}), 1, 1e-12) << what;
+    EXPECT_NEAR(max_abs(back.apply((*found.witness)[1].point) - Point3{}), 1, 1e-12) << what;
+    EXPECT_LE(distance((*found.witness)[0].point, (*found.witness)[1].point), tolerance * (1 + 1e-12))
+        << what;
   }
   EXPECT_GT(within, 20);
 }
@@ -500,7 +501,7 @@ TEST(time_of_contact, of_solids_counts_what_is_inside) {
   const TimeOfContact solids = ask(a, Motion(), b, inside, {.solid = true});
   EXPECT_EQ(solids.verdict, Verdict::intersecting);
   EXPECT_EQ(solids.time.upper, 0);
-  EXPECT_EQ(solids.inner, 1u);
+  EXPECT_EQ(solids.contained, 1u);
   // Along the wall inside, a rounding away from it: a point inside proves nothing of these surfaces.
   const Trajectory along = translated({0, 0.5, 0}, Motion::translation({std::nextafter(0.8, 0.0), 0, 0}));
   EXPECT_NE(ask(a, Motion(), b, along).verdict, Verdict::intersecting);
@@ -518,10 +519,10 @@ TEST(time_of_contact, says_what_it_cannot_do) {
   EXPECT_THROW(static_cast<void>(ask(a, path, b, translated({1, 0, 0}))), InputError);
   EXPECT_THROW(static_cast<void>(ask(a, Motion(), b, path, {.tolerance = -1})), InputError);
   const Trajectory far = translated({-4, 0, 0}, Motion::translation({5, 0.1, 0.1}));
-  const TimeOfContact stopped = ask(a, Motion(), b, far, {.tolerance = 1e-6, .budget = 3000});
+  const TimeOfContact stopped = ask(a, Motion(), b, far, {.tolerance = 1e-6}, {.max_splits = 3000});
   EXPECT_EQ(stopped.verdict, Verdict::undecided);
   EXPECT_LE(stopped.time.lower, 0.75);
-  EXPECT_FALSE(stopped.reached);
+  EXPECT_EQ(stopped.outcome, Outcome::budget_spent);
 }
 
 TEST(time_of_contact, crossings_are_proved_for_all_places_within_the_deviation) {
@@ -536,15 +537,17 @@ TEST(time_of_contact, crossings_are_proved_for_all_places_within_the_deviation) 
     const bool on_a = random() % 2 != 0;
     const PlacedBvh placed_a{a.model, a.scratch, pose_a, on_a ? deviation : 0},
         placed_b{b.model, b.scratch, pose_b, on_a ? 0 : deviation};
-    const CollideOptions options{.tolerance = 0, .budget = 20'000, .solid = trial % 2 != 0, .measure = false};
-    const Verdict verdict = collide(placed_a, placed_b, options).verdict;
+    const CollideOptions options{.tolerance = 0, .solid = trial % 2 != 0, .measure = false};
+    const snug::Run run{.max_splits = 20'000};
+    const Verdict verdict = collide(placed_a, placed_b, options, run).verdict;
     // Moved out by more than its depth, it is apart.
     if (deviation > depth * (1 + 1e-6)) {
       EXPECT_NE(verdict, Verdict::intersecting) << trial;
     }
     proved += verdict == Verdict::intersecting;
     const PlacedBvh exact{b.model, b.scratch, pose_b};
-    EXPECT_EQ(collide({a.model, a.scratch, pose_a}, exact, options).verdict, Verdict::intersecting) << trial;
+    EXPECT_EQ(collide({a.model, a.scratch, pose_a}, exact, options, run).verdict, Verdict::intersecting)
+        << trial;
   }
   EXPECT_GT(proved, 10);
 }
@@ -567,7 +570,7 @@ TEST(time_of_contact, of_every_scheme_is_not_later_than_collisions_at_samples) {
     for (int i = 0; i <= 60; ++i) {
       const double t = i / 60.0;
       const Collision at = collide({model, one, Motion()}, {same, other, motion.at(t)},
-                                   {.tolerance = 0, .budget = 20'000, .measure = false});
+                                   {.tolerance = 0, .measure = false}, {.max_splits = 20'000});
       if (at.verdict != Verdict::intersecting) continue;
       ++met;
       EXPECT_LE(found.time.lower, t) << named.name;

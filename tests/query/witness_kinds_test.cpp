@@ -7,6 +7,7 @@
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -18,16 +19,16 @@ namespace {
 using testing::NamedSurface;
 
 // The limit point at the place that a witness is said to have, by the general evaluation.
-void expect_near_limit(const LimitSurface& surface, const Motion& pose,
-                       const std::optional<SurfaceParameter>& at, const Point3& witness, double error,
+void expect_near_limit(const LimitSurface& surface, const Motion& pose, const LimitPoint& witness,
                        const std::string& where) {
+  const std::optional<Place>& at = witness.at;
   ASSERT_TRUE(at && patch_at(surface, *at)) << where;
   const SurfacePoint point = evaluate(surface, *at);
-  const Point3 placed = pose.apply(point.position);
+  const Point3 placed = pose.apply(point.point);
   // Parameters are rounded to 2^-51; around many faces points move by more than parameters do.
   const double rounding = 1e-11 * (surface.size() + max_abs(pose.offset()));
   for (std::size_t k = 0; k < 3; ++k) {
-    ASSERT_NEAR(placed[k], witness[k], error + 2 * point.error + rounding)
+    ASSERT_NEAR(placed[k], witness.point[k], witness.error + 2 * point.error + rounding)
         << where << " face " << at->owner << " corner " << at->corner << " u " << at->u << " v " << at->v;
   }
 }
@@ -39,22 +40,24 @@ struct Counts {
 
 // One question by workspaces of its own, so that nothing is left of the one before.
 Collision ask(const SurfaceBvh& a, const SurfaceBvh& b, const std::array<Motion, 2>& poses,
-              CollideOptions options, WitnessKind kind) {
+              CollideOptions options, const Run& run, WitnessKind kind) {
   SurfaceWorkspace one(a), other(b);
   options.witness = kind;
-  return collide({a, one, poses[0]}, {b, other, poses[1]}, options);
+  return collide({a, one, poses[0]}, {b, other, poses[1]}, options, run);
 }
 
 void expect_one_verdict(const SurfaceBvh& a, const SurfaceBvh& b, const std::array<Motion, 2>& poses,
-                        const CollideOptions& options, const std::string& where, Counts& counts) {
-  const Collision exact = ask(a, b, poses, options, WitnessKind::exact),
-                  near = ask(a, b, poses, options, WitnessKind::approximate),
-                  none = ask(a, b, poses, options, WitnessKind::none);
+                        const CollideOptions& options, const Run& run, const std::string& where,
+                        Counts& counts) {
+  const Collision exact = ask(a, b, poses, options, run, WitnessKind::exact),
+                  near = ask(a, b, poses, options, run, WitnessKind::approximate),
+                  none = ask(a, b, poses, options, run, WitnessKind::none);
   ++counts.verdicts[exact.verdict];
-  counts.inner += exact.inner.has_value();
+  counts.inner += exact.contained.has_value();
   for (const Collision* const other : {&near, &none}) {
     EXPECT_EQ(other->verdict, exact.verdict) << where;
-    EXPECT_EQ(other->inner, exact.inner) << where;
+    EXPECT_EQ(other->contained, exact.contained) << where;
+    EXPECT_EQ(other->outcome, exact.outcome) << where;
     // Whether there is more to measure depends on the upper end, which depends on the witness.
     if (!options.measure) {
       EXPECT_EQ(other->distance.lower, exact.distance.lower) << where;
@@ -73,21 +76,20 @@ void expect_one_verdict(const SurfaceBvh& a, const SurfaceBvh& b, const std::arr
   EXPECT_EQ(near.distance.upper, none.distance.upper) << where;
   EXPECT_LE(none.stats.evaluations, near.stats.evaluations) << where;
   EXPECT_LE(near.stats.evaluations, exact.stats.evaluations) << where;
-  EXPECT_FALSE(none.witness || none.at[0] || none.at[1] || none.witness_error != 0) << where;
+  EXPECT_FALSE(none.witness) << where;
   EXPECT_EQ(near.witness.has_value(), exact.witness.has_value()) << where;
-  if (!near.witness || !exact.witness || near.inner) return;
+  if (!near.witness || !exact.witness || near.contained) return;
   ++counts.witnesses;
-  counts.close += near.witness_error < 1e-3 * a.surface().size();
+  counts.close += std::max((*near.witness)[0].error, (*near.witness)[1].error) < 1e-3 * a.surface().size();
   for (std::size_t s = 0; s < 2; ++s) {
     const LimitSurface& surface = (s == 0 ? a : b).surface();
-    expect_near_limit(surface, poses[s], near.at[s], (*near.witness)[s], near.witness_error,
-                      where + ", near");
-    expect_near_limit(surface, poses[s], exact.at[s], (*exact.witness)[s], exact.witness_error, where);
+    expect_near_limit(surface, poses[s], (*near.witness)[s], where + ", near");
+    expect_near_limit(surface, poses[s], (*exact.witness)[s], where);
   }
   // The limit points that they stand for are no farther apart than the upper bound.
   if (near.verdict != Verdict::intersecting) {
-    const Point3 p = poses[0].apply(evaluate(a.surface(), *near.at[0]).position),
-                 q = poses[1].apply(evaluate(b.surface(), *near.at[1]).position);
+    const Point3 p = poses[0].apply(evaluate(a.surface(), *(*near.witness)[0].at).point),
+                 q = poses[1].apply(evaluate(b.surface(), *(*near.witness)[1].at).point);
     EXPECT_LE(distance(p, q), near.distance.upper + 1e-10 * (a.surface().size() + b.surface().size()))
         << where;
   }
@@ -112,10 +114,10 @@ TEST(witness_kinds, leave_the_verdict_as_it_is) {
       CollideOptions options;
       options.tolerance = size * std::array{0.0, 1e-9, 1e-3, 0.05}[random() % 4];
       options.margin = size * (random() % 2 == 0 ? 0 : 0.1 * testing::unit(random));
-      options.budget = std::array{3u, 30u, 3000u}[random() % 3];
+      const snug::Run run{.max_splits = std::array{3u, 30u, 3000u}[random() % 3]};
       options.prove_contact = random() % 2 == 0;
       options.measure = random() % 2 == 0;
-      expect_one_verdict(a, b, poses, options, s.name + ", trial " + std::to_string(trial), counts);
+      expect_one_verdict(a, b, poses, options, run, s.name + ", trial " + std::to_string(trial), counts);
     }
   });
   std::printf("  %zu separated, %zu within, %zu intersecting, %zu undecided; %zu witnesses, %zu close\n",
@@ -149,7 +151,7 @@ TEST(witness_kinds, leave_the_verdict_about_solids_as_it_is) {
       options.solid = true;
       options.measure = trial % 2 == 0;
       options.prove_contact = trial % 4 < 2;
-      expect_one_verdict(a, b, poses, options, std::string(name_of(scheme)) + " " + std::to_string(trial),
+      expect_one_verdict(a, b, poses, options, {}, std::string(name_of(scheme)) + " " + std::to_string(trial),
                          counts);
     }
   }

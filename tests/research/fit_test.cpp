@@ -49,7 +49,7 @@ class fit_command : public ::testing::Test {
     text.precision(17);
     const json answer = json::parse(outcome.out);
     for (const json& at : answer["points"]) {
-      for (const json& x : at["position"]) text << x.get<double>() << ' ';
+      for (const json& x : at["point"]) text << x.get<double>() << ' ';
       if (with_place) {
         text << (at.contains("face") ? at["face"] : at["vertex"]).get<unsigned>() << ' '
              << at["u"].get<double>() << ' ' << at["v"].get<double>();
@@ -152,7 +152,7 @@ TEST_F(fit_command, comes_nearer_from_round_to_round) {
 TEST_F(fit_command, says_where_a_budget_ended_closest_points) {
   const std::string pawn = model("pawn.obj"), points = points_of(pawn, "loop", 3, false);
   const Outcome outcome = run_research(
-      {"fit", moved(pawn, 0.003), "--points", points, "--budget", "1", "-o", output(), "--json"});
+      {"fit", moved(pawn, 0.003), "--points", points, "--max-splits", "1", "-o", output(), "--json"});
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_EQ(json::parse(outcome.out)["reached"], false);
   EXPECT_EQ(answer({moved(pawn, 0.003), "--points", points})["reached"], true);
@@ -272,7 +272,7 @@ TEST_F(fit_command, refuses_words_and_files_that_do_not_fit) {
   EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", output(), "--rounds", "0"}).status, 2);
   EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", folder_.file("out.json")}).status, 3);
   EXPECT_EQ(run_research({"fit", pawn, "--points", "nowhere.txt", "-o", output()}).status, 3);
-  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", output(), "--budget", "0"}).status, 2);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", output(), "--max-splits", "0"}).status, 2);
   EXPECT_NE(run_research({"fit", "-", "--points", "-", "-o", output()}).err.find("one standard input"),
             std::string::npos);
   const std::string curve = write("curve.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n");

@@ -40,7 +40,7 @@ TEST(program, refuses_what_it_has_no_use_for) {
                                              {"rates", "--at", "crease", "--scheme", "midedge"},
                                              {"rates", "--at", "boundary", "--scheme", "curve"},
                                              {"rates", "--bounds", "table"},
-                                             {"rates", "--budget", "3"},
+                                             {"rates", "--max-splits", "3"},
                                              {"tightness", "--samples", "0"},
                                              {"tightness", "--seed", "x"},
                                              {"tightness", "star.obj"},

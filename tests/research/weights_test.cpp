@@ -57,7 +57,7 @@ TEST_F(weights_command, evaluates_nodal_functions) {
         one += weight.get<double>();
       }
       ASSERT_NEAR(one, 1, 1e-14);
-      for (std::size_t a = 0; a < 3; ++a) ASSERT_NEAR(sum[a], point["position"][a].get<double>(), 1e-13);
+      for (std::size_t a = 0; a < 3; ++a) ASSERT_NEAR(sum[a], point["point"][a].get<double>(), 1e-13);
     }
   }
 }

@@ -83,7 +83,7 @@ void expect_piece_known(SurfaceWorkspace& workspace, const Node& node, std::mt19
     if (i < 3) at = std::array<TriangleParameter, 3>{{{0, 0}, {1, 0}, {0, 1}}}[static_cast<std::size_t>(i)];
     if (i == 3) at.v = 0;
     if (i == 4) at = {at.u, 1 - at.u};
-    const LimitPoint point = limit_point(patch, at);
+    const RelativePoint point = limit_point(patch, at);
     Extended x;
     for (std::size_t k = 0; k < 3; ++k) x[k] = static_cast<long double>(patch.origin[k]) + point.relative[k];
     // Parameters on the far edge are rounded to it.

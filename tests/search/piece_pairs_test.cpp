@@ -52,7 +52,7 @@ TEST(piece_pairs, what_is_beyond_no_plane_is_below_it) {
         testing::for_each_patch(surface, [&](PatchId p) {
           const Patch patch = surface.patch(p);
           for (int i = 0; i < 8; ++i) {
-            const LimitPoint point = limit_point(patch, testing::random_parameter(random));
+            const RelativePoint point = limit_point(patch, testing::random_parameter(random));
             samples.push_back({placed_height(patch.origin + point.relative), p.value()});
           }
         });
@@ -108,7 +108,7 @@ Points points_of(Placed& at, const std::array<Node, 2>& nodes, std::mt19937_64& 
     std::vector<TriangleParameter> parameters{{0, 0}, {1, 0}, {0, 1}};
     while (parameters.size() < 12) parameters.push_back(testing::random_parameter(random));
     for (const TriangleParameter& parameter : parameters) {
-      const LimitPoint point = limit_point(patch, parameter);
+      const RelativePoint point = limit_point(patch, parameter);
       points[s].push_back(at.frames.frame(s).apply(patch.origin + point.relative));
     }
   }

@@ -98,7 +98,7 @@ TEST(piece, boxes_and_extents_hold_it) {
           if (i < 3)
             at = std::array<TriangleParameter, 3>{{{0, 0}, {1, 0}, {0, 1}}}[static_cast<std::size_t>(i)];
           if (i >= 3 && i < 6) at.v = i == 3 ? 0 : 1 - at.u;
-          const LimitPoint point = limit_point(piece.patch, at);
+          const RelativePoint point = limit_point(piece.patch, at);
           const Point3 x = piece.patch.origin + point.relative;
           const double error = 2 * point.error + 1e-15;
           ++samples;
@@ -138,7 +138,7 @@ TEST(piece, heights_hold_those_of_needles) {
         const auto [piece, heights, box] = maker->below(PatchId(f), random() % 3, random);
         const Vector3 normal = unit_normal(piece.offset.base);
         for (int i = 0; i < 12; ++i) {
-          const LimitPoint point = limit_point(piece.patch, testing::random_parameter(random));
+          const RelativePoint point = limit_point(piece.patch, testing::random_parameter(random));
           const auto extended = [&piece = piece, &point](std::size_t x) {
             return static_cast<long double>(piece.patch.origin[x]) + point.relative[x] -
                    piece.offset.base[0][x];

@@ -47,7 +47,7 @@ TEST(placed_box, contains_limit_points_of_every_scheme_wherever_it_is_placed) {
     for (const Motion& pose : some_poses(random, surface.size())) {
       const Box3 box = placed_box(*model, pose);
       for (int sample = 0; sample < 40; ++sample) {
-        SurfaceParameter at{.owner = static_cast<std::uint32_t>(random() % surface.owner_count())};
+        Place at{.owner = static_cast<std::uint32_t>(random() % surface.owner_count())};
         const int corner = static_cast<int>(random() % 4);  // corners reach farthest
         const TriangleParameter inside = testing::random_parameter(random);
         at.u = corner == 0 ? 0 : corner == 1 ? 1 : inside.u;
@@ -55,7 +55,7 @@ TEST(placed_box, contains_limit_points_of_every_scheme_wherever_it_is_placed) {
         const auto patch = patch_at(surface, at);
         if (!patch) continue;
         const SurfacePoint point = evaluate(surface, at);
-        const auto image = placed(pose, point.position);
+        const auto image = placed(pose, point.point);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           // The point's own error is not the box's.
           ASSERT_GE(image[axis] + 1.8 * point.error, box.lower[axis]) << named.name;

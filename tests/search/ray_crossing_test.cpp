@@ -31,7 +31,7 @@ class Trial {
       : patch_(patch), record_(sketch.offset, sketch.quadratic, origin), origin_(origin) {}
 
   [[nodiscard]] Seen seen(const RayFrame& ray, TriangleParameter at) const {
-    const LimitPoint point = limit_point(patch_, at);
+    const RelativePoint point = limit_point(patch_, at);
     const auto height = [&](const Vector3& d) {
       long double sum = 0;
       for (std::size_t k = 0; k < 3; ++k) {

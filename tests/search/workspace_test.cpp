@@ -18,7 +18,7 @@ TEST(workspace, holds_nothing_of_surfaces_that_are_gone) {
   std::size_t one = 0;
   for (int i = 0; i < 50; ++i) {
     const Surface surface = star();  // another one each time, perhaps in the same memory
-    static_cast<void>(closest_point(surface, {1, 2, 3}, {.absolute = 1e-6}, {}, workspace));
+    static_cast<void>(closest_point(surface, {1, 2, 3}, {.absolute = 1e-6}, {.workspace = &workspace}));
     one = std::max(one, i == 0 ? workspace.bytes() : 0);
     EXPECT_LE(workspace.bytes(), 2 * one);
   }
@@ -30,9 +30,9 @@ TEST(workspace, keeps_a_surface_asked_about_against_itself_twice) {
   Workspace workspace;
   const Surface surface = star();
   const Motion beside = Motion::translation({0.1 * surface.size(), 0, 0});
-  const Collision with_both = collide(surface, surface.at(beside), {}, {}, workspace);
+  const Collision with_both = collide(surface, surface.at(beside), {}, {.workspace = &workspace});
   const Surface other = star();
-  EXPECT_EQ(with_both.distance, collide(surface, other.at(beside), {}, {}, workspace).distance);
+  EXPECT_EQ(with_both.distance, collide(surface, other.at(beside), {}, {.workspace = &workspace}).distance);
   const Workspace::Pieces::Pair pair = workspace.pieces().of(surface, surface);
   EXPECT_NE(&pair.a, &pair.b);
   EXPECT_EQ(&pair.a, &workspace.pieces().of(surface));
@@ -41,9 +41,9 @@ TEST(workspace, keeps_a_surface_asked_about_against_itself_twice) {
 TEST(workspace, outlives_handles_and_moves) {
   Workspace workspace;
   PlacedSurface placed = star().at(Motion::translation({1, 0, 0}));  // the only handle
-  const Collision before = collide(placed, star(), {}, {}, workspace);
+  const Collision before = collide(placed, star(), {}, {.workspace = &workspace});
   Workspace moved = std::move(workspace);
-  EXPECT_EQ(collide(placed, star(), {}, {}, moved).distance, before.distance);
+  EXPECT_EQ(collide(placed, star(), {}, {.workspace = &moved}).distance, before.distance);
 }
 
 // Each crease makes patch topologies of its own; only so many are shared with the next surface.

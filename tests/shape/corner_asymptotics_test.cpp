@@ -22,7 +22,7 @@ double sampled_area(const Patch& patch) {
   std::vector<Point3> grid((n + 1) * (n + 1));
   for (std::size_t j = 0; j <= n; ++j) {
     for (std::size_t i = 0; i <= (triangular ? n - j : n); ++i) {
-      const SurfaceParameter at{0, 0, static_cast<double>(i) / n, static_cast<double>(j) / n};
+      const Place at{0, 0, static_cast<double>(i) / n, static_cast<double>(j) / n};
       grid[i + (n + 1) * j] = evaluator.frame(at).point.from({}).position;
     }
   }

@@ -107,13 +107,12 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
           std::map<std::pair<std::size_t, std::string>, PieceEnclosure> pieces;
           BoundOptions options;
           options.level = level;
-          options.threads = 1;
           bound(
               surface, options,
               [&](const PieceEnclosure& e) {
                 pieces[{e.patch.index(), e.path.text()}] = e;
               },
-              {}, source.method);
+              {.threads = 1}, source.method);
           for (const oracle::LimitSample& s : samples) {
             const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
             ASSERT_NE(it, pieces.end());

@@ -72,22 +72,22 @@ TEST(closest, points_are_the_nearest) {
     const double size = pair.size();
     const Point to = random_point(trial, pair);
     const Point3 scaled{pair.scaled(to[0]), pair.scaled(to[1]), pair.scaled(to[2])};
-    ClosestOptions options{.absolute = 0, .relative = 0};
+    Precision options{.absolute = 0, .relative = 0};
     const std::uint64_t choice = trial.random() % 6;
     if (choice < 3) options.relative = choice == 0 ? 1e-9 : choice == 1 ? 1e-6 : 1e-2;
     if (choice >= 2 && choice < 5)
       options.absolute = pair.scaled(size * (choice == 2 ? 1e-3 : choice == 3 ? 1e-6 : 1e-9));
-    options.budget = choice == 5 ? 500 : 3000;
+    const snug::Run run{.max_splits = choice == 5 ? 500 : 3000};
     const auto before = std::chrono::steady_clock::now();
-    const ClosestPoint answer = closest_point(pair.scratch(0), scaled, options);
+    const ClosestPoint answer = closest_point(pair.scratch(0), scaled, options, run);
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
     seconds += took;
     if (took > slowest) slowest = took, slowest_trial = trial.number;
     ++asked;
-    reached += answer.reached;
+    reached += (answer.outcome == Outcome::complete);
 
     const double lower = pair.back(answer.distance.lower), upper = pair.back(answer.distance.upper),
-                 error = pair.back(answer.point_error);
+                 error = pair.back(answer.error);
     const Point point = pair.back(answer.point);
     const auto expect = [&](bool holds, const char* claim, double found, double bound) {
       if (holds) return;
@@ -95,13 +95,13 @@ TEST(closest, points_are_the_nearest) {
       char numbers[300];
       std::snprintf(numbers, sizeof numbers,
                     " (%.17g, %.17g): [%.17g, %.17g] to (%.17g %.17g %.17g) face %u u %.17g v %.17g; ", found,
-                    bound, lower, upper, to[0], to[1], to[2], answer.at.owner, answer.at.u, answer.at.v);
+                    bound, lower, upper, to[0], to[1], to[2], answer.at->owner, answer.at->u, answer.at->v);
       ADD_FAILURE() << claim << numbers << testing::describe(trial);
     };
     const double coordinates = std::max({size, std::abs(to[0]), std::abs(to[1]), std::abs(to[2])});
     const double rounding = 0x1p-50 * coordinates;
     expect(lower >= 0 && lower <= upper && std::isfinite(upper), "an interval", lower, upper);
-    if (answer.reached) {
+    if (answer.outcome == Outcome::complete) {
       const double width =
           std::max(pair.back(options.absolute.value_or(0)), options.relative.value_or(0) * upper);
       expect(upper - lower <= width * (1 + 1e-12) + 1e-300, "reached is reached", upper - lower, width);
@@ -109,9 +109,9 @@ TEST(closest, points_are_the_nearest) {
     expect(between(point, to) <= upper * (1 + 1e-12) + rounding, "the point is at most upper away",
            between(point, to), upper);
     // The same place by the twin: the face, the parameter and the point belong together.
-    expect(answer.at.u >= 0 && answer.at.v >= 0 && answer.at.u + answer.at.v <= 1, "a parameter", answer.at.u,
-           answer.at.v);
-    const Point same = pair.twin(0).limit_point(answer.at.owner, answer.at.u, answer.at.v);
+    expect(answer.at->u >= 0 && answer.at->v >= 0 && answer.at->u + answer.at->v <= 1, "a parameter",
+           answer.at->u, answer.at->v);
+    const Point same = pair.twin(0).limit_point(answer.at->owner, answer.at->u, answer.at->v);
     expect(between(same, point) <= 2 * error + 1e-12 * size, "face, u and v are those of the point",
            between(same, point), error);
     expect(between(same, point) <= 1e-9 * size, "the point is on the surface", between(same, point), size);
@@ -149,11 +149,11 @@ TEST(closest, many_in_threads_are_the_same_as_one_by_one) {
       const Point p = random_point(trial, pair);
       to.push_back({pair.scaled(p[0]), pair.scaled(p[1]), pair.scaled(p[2])});
     }
-    ClosestOptions options{.absolute = 0, .relative = 0};
+    Precision options{.absolute = 0, .relative = 0};
     options.relative = 1e-6;
     options.absolute = pair.scaled(1e-9 * pair.size());
     for (const int threads : {1, 3}) {
-      const std::vector<ClosestPoint> all = closest_points(pair.model(0), to, options, threads);
+      const std::vector<ClosestPoint> all = closest_point(pair.model(0), to, options, {.threads = threads});
       ASSERT_EQ(all.size(), to.size());
       for (std::size_t k = 0; k < to.size(); ++k) {
         SurfaceWorkspace scratch(pair.model(0));
@@ -161,9 +161,9 @@ TEST(closest, many_in_threads_are_the_same_as_one_by_one) {
         EXPECT_EQ(all[k].distance.lower, one.distance.lower);
         EXPECT_EQ(all[k].distance.upper, one.distance.upper);
         EXPECT_EQ(all[k].point, one.point);
-        EXPECT_EQ(all[k].at.owner, one.at.owner);
-        EXPECT_EQ(all[k].at.u, one.at.u);
-        EXPECT_EQ(all[k].at.v, one.at.v);
+        EXPECT_EQ(all[k].at->owner, one.at->owner);
+        EXPECT_EQ(all[k].at->u, one.at->u);
+        EXPECT_EQ(all[k].at->v, one.at->v);
       }
     }
   }

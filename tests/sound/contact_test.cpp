@@ -53,25 +53,30 @@ class Checks {
     CollideOptions options = testing::verdict_only();
     options.tolerance = pair_->scaled(trial.tolerance);
     options.margin = pair_->scaled(trial.margin);
-    options.budget = trial.budget;
+    const Run effort{.max_splits = trial.budget};
     options.prove_contact = trial.prove_contact;
     options.solid = trial.solid;
     const auto start = std::chrono::steady_clock::now();
-    const Collision answer = collide(pair_->placed(0, trial.a), pair_->placed(1, trial.b), options);
+    const Collision answer = collide(pair_->placed(0, trial.a), pair_->placed(1, trial.b), options, effort);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     asked_ += seconds;
     if (seconds > slowest_) slowest_ = seconds, slowest_trial_ = trial.number;
-    reply_ = {answer.verdict, pair_->back(answer.distance.lower), {}, {}, pair_->back(answer.witness_error),
-              answer.inner};
+    reply_ = {
+        answer.verdict,
+        pair_->back(answer.distance.lower),
+        {},
+        {},
+        pair_->back(answer.witness ? std::max((*answer.witness)[0].error, (*answer.witness)[1].error) : 0),
+        answer.contained};
     if (std::isfinite(answer.distance.upper)) reply_.upper = pair_->back(answer.distance.upper);
     if (answer.witness)
-      reply_.witness = {pair_->back((*answer.witness)[0]), pair_->back((*answer.witness)[1])};
+      reply_.witness = {pair_->back((*answer.witness)[0].point), pair_->back((*answer.witness)[1].point)};
     ++counts_[trial.family][static_cast<std::size_t>(reply_.verdict)];
     seconds_[trial.family] += seconds;
     ++total_;
     check_itself();
     check_what_is_known();
-    if (trial.number % 16 == 5) check_same(options, answer);
+    if (trial.number % 16 == 5) check_same(options, effort, answer);
     // Of what is known, every fourth trial.
     if (!trial.truth.whole() || trial.number % 4 == 0) check_with_twin();
     if (trial.solid) check_solids();
@@ -161,20 +166,22 @@ class Checks {
   }
 
   /// No answer depends on what was asked before, nor on a question that was interrupted.
-  void check_same(const CollideOptions& options, const Collision& answer) {
+  void check_same(const CollideOptions& options, const Run& effort, const Collision& answer) {
     SurfaceWorkspace a(pair_->model(0)), b(pair_->model(1));
     const std::atomic<bool> stop = true;
+    const WorkMonitor monitor{{}, &stop};
     try {
       (void)collide({pair_->model(0), a, pair_->scaled(trial_->a)},
-                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options, {{}, &stop});
+                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options,
+                    {.monitor = &monitor, .max_splits = effort.max_splits});
     } catch (const Interrupted&) {
       ++interrupted_;
     }
     const Collision fresh = collide({pair_->model(0), a, pair_->scaled(trial_->a)},
-                                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options);
+                                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options, effort);
     expect(fresh.verdict == answer.verdict && fresh.distance.lower == answer.distance.lower &&
                fresh.distance.upper == answer.distance.upper && fresh.witness == answer.witness &&
-               fresh.witness_error == answer.witness_error && fresh.stats.splits == answer.stats.splits,
+               fresh.outcome == answer.outcome && fresh.stats.splits == answer.stats.splits,
            "the same answer from fresh scratch memory", pair_->back(fresh.distance.lower),
            std::isfinite(fresh.distance.upper) ? pair_->back(fresh.distance.upper) : -1);
   }
@@ -235,8 +242,8 @@ class Checks {
       CollideOptions options = testing::verdict_only();
       options.margin = pair_->scaled(truth.upper * (1 + 1e-6));
       options.tolerance = pair_->scaled(0.01 * size());
-      options.budget = 2000;
-      const Collision again = collide(pair_->placed(0, t.a), pair_->placed(1, t.b), options);
+      const Collision again =
+          collide(pair_->placed(0, t.a), pair_->placed(1, t.b), options, {.max_splits = 2000});
       expect(again.verdict != Verdict::separated, "separated by more than the twin's points", truth.upper);
       more_undecided_ += again.verdict == Verdict::undecided && !t.hair;
       if (again.verdict == Verdict::undecided && !t.hair && std::getenv("SNUG_SHOW"))
@@ -331,10 +338,10 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
         SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
         const Motion place = Motion::translation({0, 0, by_placement ? h : 0});
         CollideOptions options = testing::verdict_only();
-        options.budget = 300;
         for (const double tolerance : {0.0, h / 4, 2 * h, std::ldexp(1e-3, std::max(a, b))}) {
           options.tolerance = tolerance;
-          const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options);
+          const Collision answer =
+              collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options, {.max_splits = 300});
           const std::string what = "sizes 2^" + std::to_string(a) + ", 2^" + std::to_string(b) + ", h " +
                                    std::to_string(c) + ": " + name_of(answer.verdict);
           EXPECT_LE(answer.distance.lower, h) << what;

@@ -34,7 +34,7 @@ using testing::unit;
 oracle::Point point_of(const Point3& p) { return {p.x, p.y, p.z}; }
 
 struct Sample {
-  SurfaceParameter at;
+  Place at;
   Point3 point;  // placed
 };
 
@@ -54,10 +54,10 @@ class Checks {
     if (trial_.number % 2 == 0 && trial_.truth.upper < 0.5 * size_) {
       tolerance = std::max(tolerance, trial_.truth.upper * (1 + 2 * unit(trial_.random)));
     }
-    ContactsOptions options{
-        .tolerance = tolerance, .precision = 0.01 * size_, .budget = 60'000, .threads = 1};
-    if (trial_.number % 5 == 4) options.budget = 1 + trial_.random() % 3000;
-    const Contacts found = contacts(trial_.placed(0), trial_.placed(1), options);
+    const ContactsOptions options{.within = tolerance, .error = 0.01 * size_};
+    Run run{.threads = 1, .max_splits = 60'000};
+    if (trial_.number % 5 == 4) run.max_splits = 1 + trial_.random() % 3000;
+    const Contacts found = contacts(trial_.placed(0), trial_.placed(1), options, run);
     ++counts["trials"];
     counts["with contacts"] += !found.regions.empty();
     counts["with curves"] += !found.curves.empty();
@@ -65,15 +65,18 @@ class Checks {
         std::any_of(found.curves.begin(), found.curves.end(),
                     [](const IntersectionCurve& c) { return c.closed && c.proved; });
     counts["with open boxes"] += !found.open.empty();
-    counts["not complete"] += !found.complete;
-    counts["coarser than asked"] += !found.reached;
+    counts["not complete"] += !found.exhaustive;
+    counts["coarser than asked"] += found.outcome != Outcome::complete;
     check_shape(found);
     check_curves(found, counts);
     if (trial_.truth.lower > tolerance) {
       for (const ContactRegion& region : found.regions) EXPECT_EQ(region.verdict, Verdict::undecided);
       EXPECT_TRUE(found.curves.empty());
     }
-    if (!found.complete) return;
+    if (!found.exhaustive) {
+      EXPECT_EQ(found.outcome, Outcome::budget_spent);
+      return;
+    }
     std::set<std::pair<std::uint32_t, std::uint32_t>> listed;
     for (const ContactRegion& region : found.regions) {
       for (const PatchContact& c : region.contacts) listed.emplace(c.patches[0].owner, c.patches[1].owner);
@@ -87,8 +90,8 @@ class Checks {
  private:
   [[nodiscard]] const testing::GroundSide& side(std::size_t s) const { return (*trial_.sides)[s]; }
 
-  [[nodiscard]] Sample sample(std::size_t s, const SurfaceParameter& at) const {
-    return {at, pose_[s].apply(evaluate(*side(s).surface, at).position)};
+  [[nodiscard]] Sample sample(std::size_t s, const Place& at) const {
+    return {at, pose_[s].apply(evaluate(*side(s).surface, at).point)};
   }
   [[nodiscard]] Sample random_sample(std::size_t s) {
     const LimitSurface& surface = *side(s).surface;
@@ -100,9 +103,9 @@ class Checks {
   }
   // The nearest one on the other surface.
   [[nodiscard]] Sample opposite(std::size_t s, const Point3& to) {
-    const ClosestPoint found =
-        closest_point(*own_[s], pose_[s].inverse().apply(to), {.absolute = 1e-13 * size_, .budget = 3000});
-    return sample(s, found.at);
+    const ClosestPoint found = closest_point(*own_[s], pose_[s].inverse().apply(to),
+                                             {.absolute = 1e-13 * size_}, {.max_splits = 3000});
+    return sample(s, *found.at);
   }
 
   void check_near(const Contacts& found, const std::set<std::pair<std::uint32_t, std::uint32_t>>& listed,
@@ -156,15 +159,15 @@ class Checks {
     for (const ContactRegion& region : found.regions) {
       EXPECT_FALSE(region.contacts.empty());
       EXPECT_LE(region.distance.lower, region.distance.upper);
-      const double between = distance(region.witness[0], region.witness[1]);
-      const double error = 4 * region.witness_error + 1e-15 * far_;
+      const double between = distance(region.witness[0].point, region.witness[1].point);
+      const double error = 4 * std::max(region.witness[0].error, region.witness[1].error) + 1e-15 * far_;
       EXPECT_GE(between + error, region.distance.lower);
       if (region.verdict == Verdict::within) {
         EXPECT_LE(between, region.distance.upper * (1 + 1e-9) + error);
       }
       for (std::size_t s = 0; s < 2; ++s) {
-        ASSERT_TRUE(region.at[s]);
-        EXPECT_LE(distance(sample(s, *region.at[s]).point, region.witness[s]), 2e-9 * far_);
+        ASSERT_TRUE(region.witness[s].at);
+        EXPECT_LE(distance(sample(s, *region.witness[s].at).point, region.witness[s].point), 2e-9 * far_);
       }
     }
     for (const IntersectionCurve& curve : found.curves) {

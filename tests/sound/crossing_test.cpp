@@ -36,7 +36,7 @@ void expect_sound(const testing::KnownPiece& known, std::mt19937_64& random, con
   if (!crossed.possible()) return;
   ++counts.possible;
   const auto point = [&](TriangleParameter at) {
-    const LimitPoint limit = limit_point(piece.patch, at);
+    const RelativePoint limit = limit_point(piece.patch, at);
     return std::pair{piece.patch.origin + limit.relative,
                      1.75 * limit.error + 0x1p-52 * max_abs(piece.patch.origin - Point3{})};
   };

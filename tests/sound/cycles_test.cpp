@@ -127,9 +127,9 @@ std::vector<Triangle> cut_triangles(const LimitSurface& surface) {
     if (topology.more_halves(topology.edge_of(topology.first_of(FaceId(at.owner)) + corner)).empty())
       continue;
     const auto owner = static_cast<std::uint32_t>(at.owner);
-    found.push_back({evaluate(surface, {owner, corner, 0, 0}).position,
-                     evaluate(surface, {owner, (corner + 1) % size, 0, 0}).position,
-                     evaluate(surface, {owner, corner, 1, 0}).position});
+    found.push_back({evaluate(surface, {owner, corner, 0, 0}).point,
+                     evaluate(surface, {owner, (corner + 1) % size, 0, 0}).point,
+                     evaluate(surface, {owner, corner, 1, 0}).point});
   }
   return found;
 }

@@ -80,28 +80,28 @@ double width(const Interval& d) { return d.upper - d.lower; }
 // More effort changes a result that the budget has ended. Much more: an eighth of the budget, and 2^17, is what
 // pieces of surfaces are held to.
 template <class Candidate>
-bool is_spent(const Surface& surface, const Candidate& candidate, DeviationOptions options,
-              const Deviation& found) {
-  options.budget *= 100;
-  const Deviation more = deviation(surface, candidate, options);
+bool is_spent(const Surface& surface, const Candidate& candidate, const DeviationOptions& options,
+              const Run& run, const Deviation& found) {
+  const Deviation more = deviation(surface, candidate, options,
+                                   {.threads = run.threads, .max_splits = 100 * run.max_splits.value()});
   return more.from_surface.distance != found.from_surface.distance ||
          more.from_candidate.distance != found.from_candidate.distance;
 }
 
 template <class Candidate>
 Deviation expect_reached(const Surface& surface, const Candidate& candidate, const DeviationOptions& options,
-                         const std::string& name, Reached& counts) {
-  const Deviation found = deviation(surface, candidate, options);
+                         const Run& run, const std::string& name, Reached& counts) {
+  const Deviation found = deviation(surface, candidate, options, run);
   ++counts.asked;
   bool answered = true;
   for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
-    const bool decided = options.tolerance && (d.lower > *options.tolerance || d.upper <= *options.tolerance);
+    const bool decided = options.threshold && (d.lower > *options.threshold || d.upper <= *options.threshold);
     answered = answered && (decided || width(d) <= *options.absolute);
     counts.decided += decided;
   }
-  EXPECT_EQ(found.reached, answered) << name;
+  EXPECT_EQ(found.outcome == Outcome::complete, answered) << name;
   if (answered) return found;
-  const bool spent = is_spent(surface, candidate, options, found);
+  const bool spent = is_spent(surface, candidate, options, run, found);
   counts.spent += spent;
   EXPECT_TRUE(spent) << name << ": " << width(found.from_surface.distance) << " and "
                      << width(found.from_candidate.distance) << " for " << *options.absolute;
@@ -113,14 +113,13 @@ template <class Candidate>
 void check(const Surface& surface, const Candidate& candidate, double precision, const std::string& name,
            std::mt19937_64& random, Reached& counts) {
   DeviationOptions options;
-  options.threads = 1;
-  options.budget = 50'000;
+  const Run run{.threads = 1, .max_splits = 50'000};
   options.absolute = precision * surface.size();
-  const Deviation found = expect_reached(surface, candidate, options, name, counts);
+  const Deviation found = expect_reached(surface, candidate, options, run, name, counts);
   constexpr std::array factors{0.5, 0.99, 0.999, 1.001, 1.01};
-  options.tolerance = factors[random() % factors.size()] *
+  options.threshold = factors[random() % factors.size()] *
                       std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper);
-  expect_reached(surface, candidate, options, name + ", tolerance", counts);
+  expect_reached(surface, candidate, options, run, name + ", tolerance", counts);
 }
 
 TEST(deviation, of_extraordinary_corners_is_reached_unless_the_budget_is_spent) {

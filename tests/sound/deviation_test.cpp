@@ -42,6 +42,7 @@ constexpr std::array precisions{1e-2, 1e-3, 1e-4, 1e-5};
 
 // Enough for nearly all, and an end of the others.
 constexpr std::uint64_t budget = 50'000;
+const Run one_thread{.threads = 1, .max_splits = budget}, three_threads{.threads = 3, .max_splits = budget};
 constexpr std::uint64_t usual_trials = 800;
 
 /// Scales to the ends of the doubles, and far away.
@@ -75,17 +76,14 @@ std::string text_of(const Interval& found, const HausdorffBounds& truth) {
 // The farthest point lies in its set up to its error, and is as far away as the lower end tells.
 void expect_farthest_point(const OneSidedDistance& found, const TriangleSet& of, const TriangleSet& from,
                            long double slack, const std::string& name) {
-  const oracle::Point p{found.from.x, found.from.y, found.from.z};
-  const long double off = std::sqrt(3.0L) * found.error + slack;
+  const oracle::Point p{found.from.point.x, found.from.point.y, found.from.point.z};
+  const long double off = std::sqrt(3.0L) * found.from.error + slack;
   EXPECT_LE(oracle::distance_to_triangles(p, of).lower, off) << name;
   EXPECT_GE(oracle::distance_to_triangles(p, from).upper, found.distance.lower - off) << name;
 }
 
 bool same(const OneSidedDistance& a, const OneSidedDistance& b) {
-  return a.distance == b.distance && a.from == b.from && a.to == b.to && a.error == b.error &&
-         a.at.has_value() == b.at.has_value() &&
-         (!a.at || (a.at->owner == b.at->owner && a.at->corner == b.at->corner && a.at->u == b.at->u &&
-                    a.at->v == b.at->v));
+  return a.distance == b.distance && a.from == b.from && a.to == b.to;
 }
 
 bool same(const Deviation& a, const Deviation& b) {
@@ -93,7 +91,7 @@ bool same(const Deviation& a, const Deviation& b) {
     return x.has_value() == y.has_value() && (!x || same(*x, *y));
   };
   return same(a.from_surface, b.from_surface) && same(a.from_candidate, b.from_candidate) &&
-         both(a.inside, b.inside) && both(a.outside, b.outside) && a.reached == b.reached;
+         both(a.inside, b.inside) && both(a.outside, b.outside) && a.outcome == b.outcome;
 }
 
 // -- Polyhedra ------------------------------------------------------------------------------------------
@@ -242,20 +240,18 @@ struct Counts {
 void expect_decided(const Surface& surface, const Trial& trial, const HausdorffBounds& there,
                     const HausdorffBounds& back, double factor, Counts& counts) {
   DeviationOptions options;
-  options.threads = 1;
-  options.budget = budget;
-  options.tolerance = static_cast<double>(factor * std::max(there.upper, back.upper));
+  options.threshold = static_cast<double>(factor * std::max(there.upper, back.upper));
   options.absolute = std::max(1e-4 * trial.size, 0x1p-36 * largest(trial.candidate));
-  const Deviation found = deviation(surface, testing::candidate_of(trial.candidate), options);
+  const Deviation found = deviation(surface, testing::candidate_of(trial.candidate), options, one_thread);
   EXPECT_TRUE(agree(found.from_surface.distance, there, 0))
       << trial.name << text_of(found.from_surface.distance, there);
   EXPECT_TRUE(agree(found.from_candidate.distance, back, 0))
       << trial.name << text_of(found.from_candidate.distance, back);
   bool decided = true;
   for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
-    const bool own = d.lower > *options.tolerance || d.upper <= *options.tolerance;
+    const bool own = d.lower > *options.threshold || d.upper <= *options.threshold;
     const bool narrow = d.upper - d.lower <= *options.absolute;
-    EXPECT_TRUE(own || narrow || !found.reached) << trial.name;
+    EXPECT_TRUE(own || narrow || found.outcome != Outcome::complete) << trial.name;
     decided = decided && (own || narrow);
   }
   ++(decided ? counts.decided : counts.undecided);
@@ -266,10 +262,8 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
   const std::vector<Triangle> candidate = testing::candidate_of(trial.candidate);
   DeviationOptions options;
   options.absolute = precision;
-  options.threads = 1;
-  options.budget = budget;
   options.solid = trial.polyhedron.closed && random() % 2 == 0;
-  const Deviation found = deviation(surface, candidate, options);
+  const Deviation found = deviation(surface, candidate, options, one_thread);
   // Planar quads are no longer planar once they are rounded.
   const long double extent =
       trial.size + largest(trial.surface) + static_cast<long double>(largest(trial.candidate));
@@ -285,8 +279,8 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
                         trial.name);
   expect_farthest_point(found.from_candidate, trial.candidate, trial.surface, slack + extent * 0x1p-50L,
                         trial.name);
-  EXPECT_TRUE(found.from_surface.at.has_value()) << trial.name;
-  EXPECT_FALSE(found.from_candidate.at.has_value()) << trial.name;
+  EXPECT_TRUE(found.from_surface.from.at.has_value()) << trial.name;
+  EXPECT_FALSE(found.from_candidate.from.at.has_value()) << trial.name;
   std::vector<Interval> intervals{found.from_surface.distance, found.from_candidate.distance};
   EXPECT_EQ(found.inside.has_value(), options.solid);
   EXPECT_EQ(found.outside.has_value(), options.solid);
@@ -304,14 +298,12 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
   }
   bool narrow = true;
   for (const Interval& d : intervals) narrow = narrow && d.upper - d.lower <= precision;
-  EXPECT_EQ(found.reached, narrow) << trial.name;
+  EXPECT_EQ(found.outcome == Outcome::complete, narrow) << trial.name;
   ++counts.asked;
-  counts.unreached[trial.coincident] += !found.reached;
+  counts.unreached[trial.coincident] += found.outcome != Outcome::complete;
   counts.spent += there.spent || back.spent;
   if (counts.asked % 8 == 0) {
-    DeviationOptions more = options;
-    more.threads = 3;
-    EXPECT_TRUE(same(found, deviation(surface, candidate, more))) << trial.name;
+    EXPECT_TRUE(same(found, deviation(surface, candidate, options, three_threads))) << trial.name;
   }
   if (counts.asked % 4 == 1 && slack == 0) {
     constexpr std::array factors{0.5, 0.99, 1.01, 2.0};
@@ -504,8 +496,8 @@ OneSidedDistance unscaled(OneSidedDistance found, int power) {
     for (std::size_t x = 0; x < 3; ++x) p[x] = std::ldexp(p[x], -power);
   };
   found.distance = {std::ldexp(found.distance.lower, -power), std::ldexp(found.distance.upper, -power)};
-  found.error = std::ldexp(found.error, -power);
-  down(found.from);
+  found.from.error = std::ldexp(found.from.error, -power);
+  down(found.from.point);
   down(found.to);
   return found;
 }
@@ -552,14 +544,12 @@ void check_triangles(const Curved& c, const Surface& surface, int power, const T
   });
   DeviationOptions options;
   options.absolute = std::ldexp(precision, power);
-  options.threads = 1;
-  options.budget = budget;
-  const Deviation found = deviation(surface, testing::candidate_of(asked), options);
+  const Deviation found = deviation(surface, testing::candidate_of(asked), options, one_thread);
   const OneSidedDistance there = unscaled(found.from_surface, power),
                          back = unscaled(found.from_candidate, power);
   ++counts.asked;
-  counts.unreached += !found.reached;
-  if (found.reached) {
+  counts.unreached += found.outcome != Outcome::complete;
+  if (found.outcome == Outcome::complete) {
     EXPECT_LE(there.distance.upper - there.distance.lower, precision) << name;
     EXPECT_LE(back.distance.upper - back.distance.lower, precision) << name;
   }
@@ -569,30 +559,31 @@ void check_triangles(const Curved& c, const Surface& surface, int power, const T
         std::max(sampled, oracle::distance_to_triangles(s.position, set).lower - std::sqrt(3.0L) * s.error);
     ++counts.samples;
   }
-  expect_reaches(there, sampled, precision, found.reached, name + ", of the surface");
+  expect_reaches(there, sampled, precision, (found.outcome == Outcome::complete), name + ", of the surface");
   counts.share += there.distance.upper > 0 ? static_cast<double>(sampled) / there.distance.upper : 1;
   LimitDistance distance(c);
   sampled = 0;
   for (const oracle::Point& p : points_of(set, 40, random)) {
     sampled = std::max<long double>(sampled, distance(p, precision / 8).lower - rounding);
   }
-  expect_reaches(back, sampled, precision, found.reached, name + ", of the candidate");
+  expect_reaches(back, sampled, precision, (found.outcome == Outcome::complete), name + ", of the candidate");
   // Farthest points: on their set, and as far away as the lower end tells.
-  const oracle::Point on_surface{there.from.x, there.from.y, there.from.z},
-      on_candidate{back.from.x, back.from.y, back.from.z};
-  EXPECT_LE(distance(on_surface, 1e-11).lower, std::sqrt(3.0) * there.error + 1e-11) << name;
+  const oracle::Point on_surface{there.from.point.x, there.from.point.y, there.from.point.z},
+      on_candidate{back.from.point.x, back.from.point.y, back.from.point.z};
+  EXPECT_LE(distance(on_surface, 1e-11).lower, std::sqrt(3.0) * there.from.error + 1e-11) << name;
   EXPECT_GE(oracle::distance_to_triangles(on_surface, set).upper,
-            there.distance.lower - std::sqrt(3.0L) * there.error - rounding)
+            there.distance.lower - std::sqrt(3.0L) * there.from.error - rounding)
       << name;
-  EXPECT_LE(oracle::distance_to_triangles(on_candidate, set).lower, std::sqrt(3.0L) * back.error + rounding)
+  EXPECT_LE(oracle::distance_to_triangles(on_candidate, set).lower,
+            std::sqrt(3.0L) * back.from.error + rounding)
       << name;
   EXPECT_GE(distance(on_candidate, precision / 64).upper,
-            back.distance.lower - std::sqrt(3.0) * back.error - rounding)
+            back.distance.lower - std::sqrt(3.0) * back.from.error - rounding)
       << name;
-  EXPECT_TRUE(there.at.has_value() && !back.at.has_value()) << name;
+  EXPECT_TRUE(there.from.at.has_value() && !back.from.at.has_value()) << name;
   if (counts.asked % 16 == 0) {
-    options.threads = 3;
-    EXPECT_TRUE(same(found, deviation(surface, testing::candidate_of(asked), options))) << name;
+    EXPECT_TRUE(same(found, deviation(surface, testing::candidate_of(asked), options, three_threads)))
+        << name;
   }
 }
 
@@ -607,11 +598,9 @@ void check_surfaces(const Curved& a, const Surface& surface, const Curved& b, do
   if (samples_of(b).empty()) return;
   DeviationOptions options;
   options.absolute = precision;
-  options.threads = 1;
-  options.budget = budget;
-  const Deviation found = deviation(surface, *other, options);
+  const Deviation found = deviation(surface, *other, options, one_thread);
   ++counts.asked;
-  counts.unreached += !found.reached;
+  counts.unreached += found.outcome != Outcome::complete;
   LimitDistance to_a(a), to_b(b);
   const auto sampled = [&](const Curved& of, LimitDistance& from) {
     long double most = 0;
@@ -623,14 +612,17 @@ void check_surfaces(const Curved& a, const Surface& surface, const Curved& b, do
     }
     return most;
   };
-  expect_reaches(found.from_surface, sampled(a, to_b), precision, found.reached, name + ", of the surface");
-  expect_reaches(found.from_candidate, sampled(b, to_a), precision, found.reached, name + ", of the other");
+  expect_reaches(found.from_surface, sampled(a, to_b), precision, (found.outcome == Outcome::complete),
+                 name + ", of the surface");
+  expect_reaches(found.from_candidate, sampled(b, to_a), precision, (found.outcome == Outcome::complete),
+                 name + ", of the other");
   const auto expect_point = [&](const OneSidedDistance& side, LimitDistance& on, LimitDistance& from) {
-    const oracle::Point p{side.from.x, side.from.y, side.from.z};
-    EXPECT_LE(on(p, 1e-11).lower, std::sqrt(3.0) * side.error + 1e-11) << name;
-    EXPECT_GE(from(p, precision / 64).upper, side.distance.lower - std::sqrt(3.0) * side.error - rounding)
+    const oracle::Point p{side.from.point.x, side.from.point.y, side.from.point.z};
+    EXPECT_LE(on(p, 1e-11).lower, std::sqrt(3.0) * side.from.error + 1e-11) << name;
+    EXPECT_GE(from(p, precision / 64).upper,
+              side.distance.lower - std::sqrt(3.0) * side.from.error - rounding)
         << name;
-    EXPECT_TRUE(side.at.has_value()) << name;
+    EXPECT_TRUE(side.from.at.has_value()) << name;
   };
   expect_point(found.from_surface, to_a, to_b);
   expect_point(found.from_candidate, to_b, to_a);
@@ -696,10 +688,10 @@ TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
       DeviationOptions options;
       options.absolute = precisions[i % 3] * surface->size();
       options.solid = true;
-      options.budget = budget;
-      const Deviation found = deviation(*surface, testing::candidate_of(set), options);
+      const Deviation found =
+          deviation(*surface, testing::candidate_of(set), options, {.max_splits = budget});
       ++counts.asked;
-      counts.unreached += !found.reached;
+      counts.unreached += found.outcome != Outcome::complete;
       ASSERT_TRUE(found.inside && found.outside) << c.name;
       EXPECT_LE(std::max(found.inside->distance.lower, found.outside->distance.lower),
                 found.from_candidate.distance.upper)
@@ -716,12 +708,14 @@ TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
         long double& most = sampled[*number != 0 ? 0 : 1];
         most = std::max<long double>(most, twin.distance_to_boxes(p) - 1e-12);
       }
-      expect_reaches(*found.inside, sampled[0], *options.absolute, found.reached, c.name + ", inside");
-      expect_reaches(*found.outside, sampled[1], *options.absolute, found.reached, c.name + ", outside");
+      expect_reaches(*found.inside, sampled[0], *options.absolute, (found.outcome == Outcome::complete),
+                     c.name + ", inside");
+      expect_reaches(*found.outside, sampled[1], *options.absolute, (found.outcome == Outcome::complete),
+                     c.name + ", outside");
       // Farthest points are on the side that they stand for.
       for (const auto& [side, within] : {std::pair{&*found.inside, true}, {&*found.outside, false}}) {
         if (side->distance.lower == 0) continue;
-        const std::optional<int> number = twin({side->from.x, side->from.y, side->from.z});
+        const std::optional<int> number = twin({side->from.point.x, side->from.point.y, side->from.point.z});
         EXPECT_TRUE(!number || (*number != 0) == within) << c.name;
       }
     } catch (const InputError&) {

@@ -49,9 +49,9 @@ TEST(distance, intervals_hold_the_truth) {
     if (choice < 4) options.relative = choice == 0 ? 1e-9 : choice == 1 ? 1e-6 : 1e-2;
     if (choice >= 3 && choice < 7)
       options.absolute = pair.scaled(size * (choice == 5 ? 1e-9 : choice == 6 ? 1e-6 : 1e-3));
-    options.budget = choice == 7 ? 1000 : trial.hair ? 1000 : 10'000;
+    const snug::Run run{.max_splits = choice == 7 ? 1000 : trial.hair ? 1000 : 10'000};
     const auto asked = std::chrono::steady_clock::now();
-    const Distance answer = distance(pair.placed(0, trial.a), pair.placed(1, trial.b), options);
+    const Distance answer = distance(pair.placed(0, trial.a), pair.placed(1, trial.b), options, run);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
     if (seconds > slowest) slowest = seconds, slowest_trial = trial.number;
     char precision[100];
@@ -60,13 +60,14 @@ TEST(distance, intervals_hold_the_truth) {
     for (const std::string& name : {trial.family, std::string(trial.hair ? "a hair apart" : precision)}) {
       Counts& group = counts[name];
       ++group.asked;
-      group.reached += answer.reached;
+      group.reached += (answer.outcome == Outcome::complete);
       group.seconds += seconds;
     }
 
     const double lower = pair.back(answer.distance.lower), upper = pair.back(answer.distance.upper),
-                 error = pair.back(answer.witness_error);
-    const std::array<Point, 2> witness{pair.back(answer.witness[0]), pair.back(answer.witness[1])};
+                 error = pair.back(std::max(answer.witness[0].error, answer.witness[1].error));
+    const std::array<Point, 2> witness{pair.back(answer.witness[0].point),
+                                       pair.back(answer.witness[1].point)};
     const auto expect = [&](bool holds, const char* claim, double found, double bound) {
       if (holds) return;
       ++failures;
@@ -79,7 +80,7 @@ TEST(distance, intervals_hold_the_truth) {
     if (trial.number % 16 == 5) {  // no answer depends on what was asked before
       SurfaceWorkspace a(pair.model(0)), b(pair.model(1));
       const Distance fresh = distance({pair.model(0), a, pair.scaled(trial.a)},
-                                      {pair.model(1), b, pair.scaled(trial.b)}, options);
+                                      {pair.model(1), b, pair.scaled(trial.b)}, options, run);
       expect(fresh.distance.lower == answer.distance.lower && fresh.distance.upper == answer.distance.upper &&
                  fresh.witness == answer.witness,
              "the same answer from fresh scratch memory", pair.back(fresh.distance.lower),
@@ -91,7 +92,7 @@ TEST(distance, intervals_hold_the_truth) {
     const double rounding = 0x1p-50 * coordinates;
 
     expect(lower >= 0 && lower <= upper && std::isfinite(upper), "an interval", lower, upper);
-    if (answer.reached) {
+    if (answer.outcome == Outcome::complete) {
       const double width =
           std::max(pair.back(options.absolute.value_or(0)), options.relative.value_or(0) * upper);
       expect(upper - lower <= width * (1 + 1e-12) + 1e-300, "reached is reached", upper - lower, width);
@@ -119,7 +120,7 @@ TEST(distance, intervals_hold_the_truth) {
     expect(pair.twin(1).on_surface(trial.b, witness[1], near), "the witness on B is on the surface", near,
            error);
     for (std::size_t s = 0; s < 2; ++s) {
-      const SurfaceParameter at = answer.at[s].value();
+      const Place at = answer.witness[s].at.value();
       const oracle::Placement& m = s == 0 ? trial.a : trial.b;
       const Point local = pair.twin(s).limit_point(at.owner, at.u, at.v);
       Point placed;

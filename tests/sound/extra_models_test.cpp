@@ -66,7 +66,7 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
           oracle::sample_uniform(testing::twin_mesh(mesh, rules.boundary), mesh.face_count() > 1500 ? 1 : 3);
       BoundOptions options;
       points += check(surface, options, samples, path);
-      options.tolerance = 0.01 * surface.size();
+      options.error = 0.01 * surface.size();
       points += check(surface, options, samples, path);
       points += check(surface, options, samples, path, BoundMethod::table);
       ++accepted;
@@ -87,7 +87,7 @@ TEST(extra_models, venus_needs_few_leaves) {
   const LimitSurface surface(read_mesh(path), {}, std::make_shared<BoundsCache>());
   for (const auto& [tolerance, most] : {std::pair{0.02, 1450u}, {0.01, 1700u}, {0.005, 3100u}}) {
     BoundOptions options;
-    options.tolerance = tolerance * surface.size();
+    options.error = tolerance * surface.size();
     EXPECT_LE(bound(surface, options, [](const PieceEnclosure&) {}).count, most) << tolerance;
   }
 }

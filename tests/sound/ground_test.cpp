@@ -91,12 +91,12 @@ class Checks {
   [[nodiscard]] const GroundSide& side(std::size_t s) const { return (*trial_->sides)[s]; }
 
   /// Less where each piece may be of a kind of its own.
-  [[nodiscard]] std::uint64_t budget(std::uint64_t usual) const {
+  [[nodiscard]] Run budget(std::uint64_t usual) const {
     std::uint64_t most = usual;
     for (std::size_t s = 0; s < 2; ++s)
       if (side(s).has_many())
         most = std::min<std::uint64_t>(most, side(s).model->method() == BoundMethod::table ? 60 : 300);
-    return most;
+    return {.max_splits = most};
   }
 
   [[nodiscard]] bool has_many_kinds(std::size_t s) const {
@@ -155,9 +155,9 @@ class Checks {
     expect(found.lower <= 0, claim, found.lower);
     counts_["twin left open"] += found.spent;
   }
-  void expect_on_surfaces(const std::array<Point3, 2>& witness, double error) {
-    const double near = std::max(2 * error, 1e-9 * size_) + 8 * rounding_;
+  void expect_on_surfaces(const WitnessPoints& witness) {
     for (std::size_t s = 0; s < 2; ++s) {
+      const double error = witness[s].error, near = std::max(2 * error, 1e-9 * size_) + 8 * rounding_;
       // The twin goes down 46 levels, which where many edges meet are still wide, most in a dual scheme: with Midedge
       // as wide as the polygon.
       double reached = near;
@@ -167,7 +167,8 @@ class Checks {
       }
       ContactGoal goal;
       goal.threshold = near;
-      const ContactBounds off = side(s).twin->distance_to(trial_->places[s], point_of(witness[s]), goal);
+      const ContactBounds off =
+          side(s).twin->distance_to(trial_->places[s], point_of(witness[s].point), goal);
       counts_["twin left a witness open"] += off.upper > near;
       expect(off.lower <= near && off.upper <= reached,
              s == 0 ? "the witness on A is on the surface" : "the witness on B is on the surface", near,
@@ -179,9 +180,9 @@ class Checks {
     CollideOptions options = testing::verdict_only();
     options.tolerance = trial_->tolerance;
     options.margin = trial_->margin;
-    options.budget = budget(trial_->tolerance > 0 ? 20'000 : 3000);
+    const Run run = budget(trial_->tolerance > 0 ? 20'000 : 3000);
     options.prove_contact = trial_->number % 3 == 0;
-    const Collision answer = collide(trial_->placed(0), trial_->placed(1), options);
+    const Collision answer = collide(trial_->placed(0), trial_->placed(1), options, run);
     answer_ = std::string("collide: ") + name_of(answer.verdict) + " [" +
               std::to_string(answer.distance.lower) + ", " + std::to_string(answer.distance.upper) + "]";
     ++counts_[std::string("collide: ") + name_of(answer.verdict)];
@@ -216,16 +217,16 @@ class Checks {
     }
     if (answer.witness) {
       if (answer.verdict != Verdict::intersecting)
-        expect(between(point_of((*answer.witness)[0]), point_of((*answer.witness)[1])) <=
+        expect(between(point_of((*answer.witness)[0].point), point_of((*answer.witness)[1].point)) <=
                    answer.distance.upper * (1 + 1e-12) + rounding_,
                "the witnesses are at most upper apart", answer.distance.upper);
-      expect_on_surfaces(*answer.witness, answer.witness_error);
+      expect_on_surfaces(*answer.witness);
     }
     if (trial_->number % 3 == 1) {
       SurfaceWorkspace a(*side(0).model), b(*side(1).model);
       for (const bool fresh : {true, false}) {
-        const Collision again = fresh ? collide(trial_->placed(0, a), trial_->placed(1, b), options)
-                                      : collide(trial_->placed(0), trial_->placed(1), options);
+        const Collision again = fresh ? collide(trial_->placed(0, a), trial_->placed(1, b), options, run)
+                                      : collide(trial_->placed(0), trial_->placed(1), options, run);
         expect(again.verdict == answer.verdict && again.distance.lower == answer.distance.lower &&
                    again.distance.upper == answer.distance.upper && again.witness == answer.witness &&
                    again.stats.splits == answer.stats.splits,
@@ -252,13 +253,13 @@ class Checks {
     const std::uint64_t choice = trial_->random() % 4;
     if (choice != 1) options.relative = choice == 0 ? 1e-6 : 1e-2;
     if (choice != 0) options.absolute = size_ * (choice == 1 ? 1e-6 : 1e-3);
-    options.budget = budget(3000);
-    const Distance answer = distance(trial_->placed(0), trial_->placed(1), options);
+    const Run run = budget(3000);
+    const Distance answer = distance(trial_->placed(0), trial_->placed(1), options, run);
     char text[100];
     std::snprintf(text, sizeof text, "distance: [%.17g, %.17g]", answer.distance.lower,
                   answer.distance.upper);
     answer_ = text;
-    counts_["distance: reached"] += answer.reached;
+    counts_["distance: reached"] += (answer.outcome == Outcome::complete);
     expect(answer.distance.lower >= 0 && answer.distance.lower <= answer.distance.upper &&
                std::isfinite(answer.distance.upper),
            "an interval", answer.distance.lower, answer.distance.upper);
@@ -267,14 +268,14 @@ class Checks {
     if (answer.distance.upper == 0) {
       expect_contact("false contact");
     } else {
-      expect(between(point_of(answer.witness[0]), point_of(answer.witness[1])) <=
+      expect(between(point_of(answer.witness[0].point), point_of(answer.witness[1].point)) <=
                  answer.distance.upper * (1 + 1e-12) + rounding_,
              "the witnesses are at most upper apart", answer.distance.upper);
     }
-    expect_on_surfaces(answer.witness, answer.witness_error);
+    expect_on_surfaces(answer.witness);
     if (trial_->number % 3 == 2) {
       SurfaceWorkspace a(*side(0).model), b(*side(1).model);
-      const Distance again = distance(trial_->placed(0, a), trial_->placed(1, b), options);
+      const Distance again = distance(trial_->placed(0, a), trial_->placed(1, b), options, run);
       expect(again.distance.lower == answer.distance.lower && again.distance.upper == answer.distance.upper &&
                  again.witness == answer.witness,
              "the same answer again", again.distance.lower, again.distance.upper);
@@ -304,19 +305,19 @@ class Checks {
 
   void check_closest(std::size_t s) {
     const Point to = some_point(s);
-    ClosestOptions options{.absolute = 0, .relative = 0};
+    Precision options{.absolute = 0, .relative = 0};
     const std::uint64_t choice = trial_->random() % 3;
     options.relative = choice == 0 ? 1e-9 : 1e-3;
     options.absolute = size_ * (choice == 1 ? 1e-4 : 1e-9);
-    options.budget = budget(1000);
-    const ClosestPoint answer = closest_point(*side(s).scratch, {to[0], to[1], to[2]}, options);
+    const Run run = budget(1000);
+    const ClosestPoint answer = closest_point(*side(s).scratch, {to[0], to[1], to[2]}, options, run);
     char text[240];
     std::snprintf(text, sizeof text,
                   "closest on %s to (%.17g %.17g %.17g): [%.17g, %.17g] owner %u corner %u at %.17g %.17g",
                   s == 0 ? "A" : "B", to[0], to[1], to[2], answer.distance.lower, answer.distance.upper,
-                  answer.at.owner, answer.at.corner, answer.at.u, answer.at.v);
+                  answer.at->owner, answer.at->corner, answer.at->u, answer.at->v);
     answer_ = text;
-    counts_["closest: reached"] += answer.reached;
+    counts_["closest: reached"] += (answer.outcome == Outcome::complete);
     const double rounding = 0x1p-50 * std::max({size_, std::abs(to[0]), std::abs(to[1]), std::abs(to[2])});
     const Point point = point_of(answer.point);
     expect(answer.distance.lower >= 0 && answer.distance.lower <= answer.distance.upper &&
@@ -337,17 +338,18 @@ class Checks {
     // The twin goes down 46 levels, which at large faces of a dual scheme are still wide, most of all around
     // their middles.
     const bool primal = snug::rules_of(side(s).made.scheme).primal, many = side(s).has_many();
-    if (!primal && many && answer.at.u == 1 && answer.at.v == 1) {
+    if (!primal && many && answer.at->u == 1 && answer.at->v == 1) {
       ++counts_["closest: in the middle of a large face"];
       return;
     }
     const bool by_twin = primal && !many;
-    const Point same = side(s).twin->limit_point(answer.at.owner, answer.at.corner, answer.at.u, answer.at.v);
-    expect(between(same, point) <= 2 * answer.point_error + (by_twin ? 1e-9 : 1e-3) * size_,
-           "owner, u and v are those of the point", between(same, point), answer.point_error);
+    const Point same =
+        side(s).twin->limit_point(answer.at->owner, answer.at->corner, answer.at->u, answer.at->v);
+    expect(between(same, point) <= 2 * answer.error + (by_twin ? 1e-9 : 1e-3) * size_,
+           "owner, u and v are those of the point", between(same, point), answer.error);
     if (trial_->number % 3 == 0) {
       SurfaceWorkspace fresh(*side(s).model);
-      const ClosestPoint again = closest_point(fresh, {to[0], to[1], to[2]}, options);
+      const ClosestPoint again = closest_point(fresh, {to[0], to[1], to[2]}, options, run);
       expect(again.distance.lower == answer.distance.lower && again.distance.upper == answer.distance.upper &&
                  again.point == answer.point,
              "the same answer again", again.distance.lower, again.distance.upper);
@@ -383,9 +385,9 @@ class Checks {
     if (!(trial_->truth.lower > 0)) return;  // what meets is told by the surfaces alone
     CollideOptions options = testing::verdict_only();
     options.tolerance = trial_->tolerance;
-    options.budget = budget(20'000);
+    const Run run = budget(20'000);
     options.solid = true;
-    const Collision answer = collide(trial_->placed(0), trial_->placed(1), options);
+    const Collision answer = collide(trial_->placed(0), trial_->placed(1), options, run);
     answer_ = std::string("solids: ") + name_of(answer.verdict);
     ++counts_[answer_];
     const std::optional<bool> in_a = holds(0), in_b = holds(1);
@@ -420,7 +422,7 @@ void expect_limit_points(const oracle::TaggedMesh& mesh, const oracle::Rules& ru
   for (const oracle::FaceSample& s : samples) {
     const SurfacePoint found = evaluate(surface, {s.face, s.part, s.u, s.v});
     for (std::size_t x = 0; x < 3; ++x)
-      EXPECT_LE(std::fabs(found.position[x] - s.position[x]), found.error + s.error)
+      EXPECT_LE(std::fabs(found.point[x] - s.position[x]), found.error + s.error)
           << "face " << s.face << '.' << s.part << " at " << s.u << ", " << s.v;
   }
 }

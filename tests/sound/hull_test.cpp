@@ -44,22 +44,21 @@ void check(const TaggedMesh& mesh, const oracle::WindingScheme& scheme, const Sc
   Hulls found;
   try {
     surface.emplace(testing::control_mesh(mesh, rules ? *rules : oracle::Rules{}), options, library);
-    how.tolerance *= surface->size();
-    how.budget = 15'000;
-    found = hulls(SurfaceBvh(*surface), how);
+    how.error = *how.error * surface->size();
+    found = hull(SurfaceBvh(*surface), how, {.max_splits = 15'000});
   } catch (const InputError& error) {
     EXPECT_TRUE(error.problem() == InputProblem::refused || error.problem() == InputProblem::value)
         << name << ": " << error.what();
     ++outcomes.others["refused"];
     return;
   }
-  EXPECT_EQ(found.verified, found.problems.empty()) << name;
-  if (!found.verified) {
+  EXPECT_EQ(found.outcome == Outcome::complete, found.problems.empty()) << name;
+  if (found.outcome != Outcome::complete) {
     ++outcomes.others[name_of(found.problems[0].fault)];
     return;
   }
   ++outcomes.verified;
-  testing::expect_sandwich(mesh, scheme, found, how.tolerance, 3, name, outcomes.counts);
+  testing::expect_sandwich(mesh, scheme, found, *how.error, 3, name, outcomes.counts);
 }
 
 // Of every scheme, smooth, creased and with corners; one or several components, some inside out.
@@ -73,7 +72,7 @@ TEST(hulls, of_random_solids_sandwich_them) {
     if (random() % 4 == 0) {
       for (auto& polygon : c.mesh.polygons) std::reverse(polygon.begin(), polygon.end());
     }
-    HullOptions how{.tolerance = std::array{0.08, 0.03, 0.01}[random() % 3]};
+    HullOptions how{.error = std::array{0.08, 0.03, 0.01}[random() % 3]};
     how.single_precision = random() % 4 == 0;
     check(c.mesh, c.scheme, c.options, how, library, c.name, outcomes);
   }
@@ -90,8 +89,8 @@ TEST(hulls, of_surfaces_with_every_tag_sandwich_them) {
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 77)) {
       if (HasFailure()) return;
       if (number++ % 5 > 1) continue;  // plain and tagged, with each boundary rule, by turns
-      check(c.mesh, c.rules, testing::options_of(c.rules), {.tolerance = number % 2 == 1 ? 0.04 : 0.015},
-            library, c.name + ", " + testing::text_of(c.rules), outcomes);
+      check(c.mesh, c.rules, testing::options_of(c.rules), {.error = number % 2 == 1 ? 0.04 : 0.015}, library,
+            c.name + ", " + testing::text_of(c.rules), outcomes);
     }
     outcomes.print(scheme == oracle::PrimalScheme::loop ? "loop" : "catmark");
     EXPECT_GT(outcomes.verified, 30u);
@@ -120,8 +119,8 @@ TEST(hulls, of_poles_of_many_narrow_faces_sandwich_them) {
   const oracle::Rules rules{.scheme = oracle::PrimalScheme::loop};
   const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
                              std::make_shared<BoundsCache>());
-  const Hulls found = hulls(SurfaceBvh(surface), {.tolerance = 0.02, .inner = false});
-  ASSERT_TRUE(found.verified);
+  const Hulls found = hull(SurfaceBvh(surface), {.error = 0.02, .inner = false});
+  ASSERT_EQ(found.outcome, Outcome::complete);
   EXPECT_LE(found.outer->triangles.size(), 200'000u);
   HullCounts counts;
   testing::expect_sandwich(mesh, rules, found, 0.02, 3, "poles", counts);
@@ -202,9 +201,8 @@ TEST(hulls, of_parts_beside_each_other_sandwich_them) {
         oracle::Point by{0.1 * testing::unit(random), 0.1 * testing::unit(random),
                          0.1 * testing::unit(random)};
         by[axis] = high - low + apart;
-        check(both(a, moved(b, by)), oracle::Rules{}, testing::options_of(oracle::Rules{}),
-              {.tolerance = 0.02}, library, name_a + " beside " + name_b + " at " + std::to_string(apart),
-              outcomes);
+        check(both(a, moved(b, by)), oracle::Rules{}, testing::options_of(oracle::Rules{}), {.error = 0.02},
+              library, name_a + " beside " + name_b + " at " + std::to_string(apart), outcomes);
         if (HasFailure()) return;
       }
     }

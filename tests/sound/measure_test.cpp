@@ -38,7 +38,7 @@ TEST(measure, holds_those_of_refined_meshes) {
     const Surface surface(testing::control_mesh(c),
                           {.scheme = c.options.scheme, .boundary = c.options.boundary});
     const Measures rough = measure(surface, {.relative = 1e-2}), found = measure(surface, {.relative = 1e-5});
-    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.outcome, Outcome::complete);
     ASSERT_TRUE(found.volume);
     if (!found.inertia) continue;  // shells that cancel
     const oracle::MeasureEstimate twin =
@@ -92,7 +92,7 @@ TEST(measure, holds_the_area_with_every_tag_and_rule) {
         continue;
       }
       const Measures found = measure(surface);
-      EXPECT_TRUE(found.reached);
+      EXPECT_EQ(found.outcome, Outcome::complete);
       EXPECT_LE(found.area.lower, twin.value + twin.error);
       EXPECT_GE(found.area.upper, twin.value - twin.error);
       errors.push_back(twin.error / twin.value);

@@ -1,7 +1,7 @@
 // Random bodies and folds of every scheme with a tolerance: none is clear whose refined mesh has near points
 // with a long way between them, none near whose refined mesh has none.
 
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
@@ -90,7 +90,7 @@ TEST(near, verdicts_are_those_of_refined_meshes) {
                          radius = (2.5 + 2 * unit(random)) * tolerance;
             const SelfContact found =
                 self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}),
-                             {.tolerance = tolerance, .radius = radius, .budget = 300'000});
+                             {.within = tolerance, .radius = radius}, {.max_splits = 300'000});
             ++counts[std::string(name_of(scheme)) + " " + name_of(found.verdict)];
             const std::string name = std::string(name_of(scheme)) + ", " + std::to_string(n) + ", " +
                                      std::to_string(gap) + ", " + std::to_string(shake) + ", " +
@@ -109,7 +109,7 @@ TEST(near, verdicts_are_those_of_refined_meshes) {
             if (found.verdict == SelfVerdict::near) {
               ASSERT_FALSE(found.pairs.empty());
               for (std::size_t i = 0; i < std::min<std::size_t>(5, found.pairs.size()); ++i) {
-                const auto& [a, b] = found.pairs[i].points;
+                const Point3 &a = found.pairs[i].points[0].point, &b = found.pairs[i].points[1].point;
                 EXPECT_LE(distance(a, b), tolerance * (1 + 1e-12)) << name;
                 const std::uint32_t at = ways.nearest({a.x, a.y, a.z}), to = ways.nearest({b.x, b.y, b.z});
                 const double way = ways.from(at, INFINITY)[to];

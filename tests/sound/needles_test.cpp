@@ -165,11 +165,10 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
     const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
     const double layer = here.lattice.layer() * (1 - 1e-12);
     CollideOptions options = testing::verdict_only();
-    options.budget = 2000;
     options.prove_contact = true;
     if (random() % 2)
       options.tolerance = here.lattice.layer() * std::exp2(static_cast<double>(random() % 12) - 4);
-    const Collision collision = collide(at_a, at_b, options);
+    const Collision collision = collide(at_a, at_b, options, {.max_splits = 2000});
     ASSERT_NE(collision.verdict, Verdict::intersecting) << here.text;
     if (std::isfinite(collision.distance.upper)) {
       ASSERT_GE(collision.distance.upper, layer) << here.text;
@@ -180,13 +179,12 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
     separated += collision.verdict == Verdict::separated;
     DistanceOptions how;
     how.relative = 1e-3;
-    how.budget = 2000;
-    const Distance found = distance(at_a, at_b, how);
+    const Distance found = distance(at_a, at_b, how, {.max_splits = 2000});
     ASSERT_LE(found.distance.lower, found.distance.upper) << here.text;
     ASSERT_GE(found.distance.upper, layer) << here.text;
     // From a vertex of A, which is no nearer than a layer to B.
     const ClosestPoint closest = closest_point(b.scratch, a.surface.mesh().points[random() % 25],
-                                               {.absolute = {}, .relative = 1e-3, .budget = 2000});
+                                               {.absolute = {}, .relative = 1e-3}, {.max_splits = 2000});
     ASSERT_GE(closest.distance.upper, layer) << here.text;
     ASSERT_LE(closest.distance.lower, closest.distance.upper) << here.text;
   }
@@ -215,19 +213,17 @@ TEST(needles, through_each_other_are_never_called_apart) {
            here.scheme, library, here.options);
     const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
     CollideOptions options = testing::verdict_only();
-    options.budget = 2000;
-    const Collision collision = collide(at_a, at_b, options);
+    const Collision collision = collide(at_a, at_b, options, {.max_splits = 2000});
     ASSERT_NE(collision.verdict, Verdict::separated) << here.text;
     ASSERT_EQ(collision.distance.lower, 0) << here.text;
     intersecting += collision.verdict == Verdict::intersecting;
     DistanceOptions how;
     how.relative = 1e-3;
-    how.budget = 2000;
-    ASSERT_EQ(distance(at_a, at_b, how).distance.lower, 0) << here.text;
+    ASSERT_EQ(distance(at_a, at_b, how, {.max_splits = 2000}).distance.lower, 0) << here.text;
     // Corners of B, which are limit points of it: their distance is 0.
     const std::size_t corner = random() % 2 ? 4 : 20;
     const ClosestPoint at_corner = closest_point(b.scratch, b.surface.mesh().points[corner],
-                                                 {.absolute = {}, .relative = 1e-3, .budget = 2000});
+                                                 {.absolute = {}, .relative = 1e-3}, {.max_splits = 2000});
     ASSERT_EQ(at_corner.distance.lower, 0) << here.text;
   }
   EXPECT_GT(intersecting, count / 25);

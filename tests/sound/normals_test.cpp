@@ -96,11 +96,12 @@ Cones cones_of(const LimitSurface& surface, unsigned level) {
   BoundOptions options;
   options.level = level;
   options.normals = true;
-  options.threads = 1;
-  bound(surface, options, [&](const PieceEnclosure& piece) {
-    cones.pieces.push_back(piece);
-    cones.found += piece.normals ? 1 : 0;
-  });
+  bound(surface, options,
+        [&](const PieceEnclosure& piece) {
+          cones.pieces.push_back(piece);
+          cones.found += piece.normals ? 1 : 0;
+        },
+        {.threads = 1});
   return cones;
 }
 

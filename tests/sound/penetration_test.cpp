@@ -28,8 +28,7 @@ std::vector<Point3> samples_of(const LimitSurface& surface, unsigned steps) {
     for (unsigned i = 0; i <= steps; ++i) {
       for (unsigned j = 0; i + j <= steps; ++j) {
         points.push_back(
-            evaluate(surface, {f, 0, static_cast<double>(i) / steps, static_cast<double>(j) / steps})
-                .position);
+            evaluate(surface, {f, 0, static_cast<double>(i) / steps, static_cast<double>(j) / steps}).point);
       }
     }
   }
@@ -189,7 +188,7 @@ TEST(penetration, finds_ways_into_holes) {
     ASSERT_GE(found.depth.upper, depth * (1 - 1e-12)) << trial;
     EXPECT_LE(found.depth.upper, 1.02 * depth) << trial << ' ' << x << ' ' << y;
     slanted += into_hole < 1 ? 1 : 0;
-    reached += found.reached ? 1 : 0;
+    reached += (found.outcome == Outcome::complete) ? 1 : 0;
   }
   std::cout << slanted << " into the hole, " << reached << " reached\n";
   EXPECT_GT(slanted, 10);
@@ -202,7 +201,7 @@ TEST(penetration, of_separated_solids_is_zero_and_open_surfaces_are_refused) {
   SurfaceWorkspace scratch(model), other(same), flat(open);
   const Penetration none = penetration({model, scratch, {}}, {same, other, Motion::translation({5, 0, 0})});
   EXPECT_EQ(none.depth.upper, 0);
-  EXPECT_TRUE(none.reached);
+  EXPECT_EQ(none.outcome, Outcome::complete);
   EXPECT_THROW(static_cast<void>(penetration({model, scratch, {}}, {open, flat, {}})), InputError);
   // One in the middle of itself: as deep as it is thick.
   const Penetration whole = penetration({model, scratch, {}}, {same, other, {}});

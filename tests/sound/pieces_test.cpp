@@ -40,7 +40,7 @@ std::vector<Sample> samples_of(const Patch& patch, std::mt19937_64& random) {
     if (i < 3) at = std::array<TriangleParameter, 3>{{{0, 0}, {1, 0}, {0, 1}}}[static_cast<std::size_t>(i)];
     if (i == 3) at.v = 0;
     if (i == 4) at.v = 1 - at.u;
-    const LimitPoint point = limit_point(patch, at);
+    const RelativePoint point = limit_point(patch, at);
     Sample sample{{}, 1.75L * point.error};
     for (std::size_t k = 0; k < 3; ++k) {
       sample.x[k] = static_cast<long double>(patch.origin[k]) + point.relative[k];

@@ -1,4 +1,4 @@
-// The promises of trace(): against exact rational hits on sharp polyhedra, and on curved surfaces against refined
+// The promises of ray(): against exact rational hits on sharp polyhedra, and on curved surfaces against refined
 // meshes and the hulls of their one-rings.
 //
 //   SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_test --gtest_filter=rays.aimed_*
@@ -59,7 +59,7 @@ std::string text_of(const RayHits& answer) {
   for (const RayHit& hit : answer.hits)
     text << "\n  " << hit.t.lower << " .. " << hit.t.upper
          << (hit.certified ? " certified " : " not certified ") << hit.side;
-  return text.str() + (answer.complete ? "" : "\n  incomplete");
+  return text.str() + (answer.outcome != Outcome::budget_spent ? "" : "\n  incomplete");
 }
 
 // ---- Sharp polyhedra --------------------------------------------------------------------------------------------
@@ -259,7 +259,7 @@ struct Counted {
 constexpr std::uint64_t usual_budget = 2000;
 
 void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& ray, const RayOptions& options,
-                const std::string& name, Counted& counted) {
+                const Run& run, const std::string& name, Counted& counted) {
   const auto where = [&] { return name + ": " + text_of(ray, options.query); };
   std::vector<ExactHit> truth = twin.hits(plain(ray.origin), plain(ray.direction));
   bool generic = oracle::is_generic(truth);
@@ -268,12 +268,12 @@ void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& r
   });
   for (const ExactHit& hit : truth)
     generic = generic && hit.t > mpq_class(ray.from) && (ray.to == INFINITY || hit.t < mpq_class(ray.to));
-  const RayHits answer = trace(workspace, ray, options);
+  const RayHits answer = snug::ray(workspace, ray, options, run);
   ++counted.rays;
-  const bool usual = !options.precision && options.budget == usual_budget;
+  const bool usual = !options.absolute && run.max_splits == usual_budget;
   counted.generic += generic && usual;
   counted.hits += truth.size();
-  if (!answer.complete) ++counted.incomplete;
+  if (answer.outcome == Outcome::budget_spent) ++counted.incomplete;
   const auto held = [&](const ExactHit& hit) {
     return std::any_of(answer.hits.begin(), answer.hits.end(),
                        [&](const RayHit& h) { return Hits::holds(h, hit.t); });
@@ -301,7 +301,7 @@ void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& r
       EXPECT_EQ(hit.side, own) << where();
     }
   }
-  if (answer.complete) {
+  if (answer.outcome != Outcome::budget_spent) {
     if (options.query == RayQuery::all) {
       for (const ExactHit& hit : truth)
         EXPECT_TRUE(held(hit)) << where() << ": lost the hit at " << hit.t.get_d() << " of face " << hit.face;
@@ -328,7 +328,8 @@ void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& r
   if (truth.empty()) {
     EXPECT_FALSE(answer.certain_hit()) << where();
   }
-  if (generic && usual && !(all_certified && answer.complete)) ++counted.untold_generic;
+  if (generic && usual && !(all_certified && answer.outcome != Outcome::budget_spent))
+    ++counted.untold_generic;
 }
 
 class FlatTrials {
@@ -349,10 +350,10 @@ class FlatTrials {
     for (std::uint64_t i = 0; i < rays && !::testing::Test::HasFailure(); ++i) {
       RayOptions options{.query = static_cast<RayQuery>(random_() % 4 == 0 ? random_() % 3 : 2)};
       if (random_() % 4 == 0)
-        options.precision = std::array{0.0, 1e-9, 1e-3, 10.0, 1e5}[random_() % 5] * surface_.size();
-      options.budget =
-          random_() % 16 == 0 ? std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3] : usual_budget;
-      check_flat(workspace_, twin_, ray(), options, name_ + ", ray " + std::to_string(i), counted_);
+        options.absolute = std::array{0.0, 1e-9, 1e-3, 10.0, 1e5}[random_() % 5] * surface_.size();
+      const Run run{.max_splits = random_() % 16 == 0 ? std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3]
+                                                      : usual_budget};
+      check_flat(workspace_, twin_, ray(), options, run, name_ + ", ray " + std::to_string(i), counted_);
     }
   }
 
@@ -469,7 +470,7 @@ TEST(rays, beside_a_border_are_no_certain_hits) {
         const double off = std::ldexp(1, -k);
         for (const Point3& from : {Point3{-off, share, 1}, Point3{1 + off, share, 1}, Point3{share, -off, 1},
                                    Point3{share, 1 + off, 1}}) {
-          EXPECT_FALSE(trace(workspace, {from, {0, 0, -1}}, {.precision = precision}).certain_hit()) << k;
+          EXPECT_FALSE(snug::ray(workspace, {from, {0, 0, -1}}, {.absolute = precision}).certain_hit()) << k;
         }
       }
 }
@@ -545,7 +546,7 @@ class CurvedTrials {
         const Point3 p = spot(static_cast<Spot>(a)), q = spot(static_cast<Spot>(b));
         if (p == q) continue;
         Ray ray{p, q - p, -1e3, 1e3};
-        ask(ray, {.query = RayQuery::all, .budget = usual_budget}, {}, counts_.uncertified_aimed, true);
+        ask(ray, {.query = RayQuery::all}, {.max_splits = usual_budget}, {}, counts_.uncertified_aimed, true);
         ++counts_.aimed;
       }
   }
@@ -576,14 +577,15 @@ class CurvedTrials {
           for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = std::ldexp(ray.direction[k], exponent);
         }
       }
-      RayOptions options{.query = static_cast<RayQuery>(random_() % 3), .budget = 500};
+      RayOptions options{.query = static_cast<RayQuery>(random_() % 3)};
+      Run run{.max_splits = 500};
       if (random_() % 2 == 0) {
-        options.precision = std::array{0.0, 1e-15, 1e-3, 1e3}[random_() % 4] * surface_.size();
-        if (!std::isfinite(*options.precision)) options.precision.reset();
+        options.absolute = std::array{0.0, 1e-15, 1e-3, 1e3}[random_() % 4] * surface_.size();
+        if (!std::isfinite(*options.absolute)) options.absolute.reset();
       }
-      if (random_() % 3 == 0) options.budget = std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3];
+      if (random_() % 3 == 0) run.max_splits = std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3];
       try {
-        ask(ray, options, {}, counts_.uncertified_aimed, true);
+        ask(ray, options, run, {}, counts_.uncertified_aimed, true);
         ++counts_.aimed;
       } catch (const InputError& error) {
         ++counts_.thrown[error.what()];
@@ -632,7 +634,7 @@ class CurvedTrials {
     }
     return evaluate(surface_, place_of(surface_, p, {u, v}));
   }
-  Point3 spot(Spot sort) { return on_patch(sort).position; }
+  Point3 spot(Spot sort) { return on_patch(sort).point; }
   Point3 anywhere(double share) {
     Point3 q = model_.ball().centre;
     for (std::size_t x = 0; x < 3; ++x) q[x] += between(random_, -share, share) * model_.ball().radius;
@@ -644,8 +646,7 @@ class CurvedTrials {
       if (i % 2 == 0) {
         const SurfacePoint p = on_patch(Spot::inside);
         if (!p.normal) continue;
-        q = p.position -
-            model_.ball().radius * std::exp2(-between(random_, 1, i % 4 == 0 ? 6 : 20)) * *p.normal;
+        q = p.point - model_.ball().radius * std::exp2(-between(random_, 1, i % 4 == 0 ? 6 : 20)) * *p.normal;
       }
       if (!is_finite(q)) continue;
       if (!closed_) {
@@ -678,12 +679,12 @@ class CurvedTrials {
               : p.tangents[0];
       if (along == Vector3{}) along = {1, 0, 0};
       along = (1 / length(along)) * along;
-      ray = {p.position - between(random_, 0, 2) * model_.ball().radius * along, along};
+      ray = {p.point - between(random_, 0, 2) * model_.ball().radius * along, along};
       uncertified = &counts_.uncertified_touching;
       ++counts_.touching;
       const std::optional<bool> held = closed_ ? contains(workspace_, ray.origin) : std::nullopt;
-      ask(ray, {.query = static_cast<RayQuery>(random_() % 3), .budget = usual_budget}, held, *uncertified,
-          i % 4 == 0);
+      ask(ray, {.query = static_cast<RayQuery>(random_() % 3)}, {.max_splits = usual_budget}, held,
+          *uncertified, i % 4 == 0);
       return;
     } else {
       ray.direction = spot(static_cast<Spot>(random_() % spots)) - ray.origin;
@@ -691,14 +692,14 @@ class CurvedTrials {
     }
     if (ray.direction == Vector3{}) return;
     const RayQuery query = random_() % 2 == 0 ? RayQuery::all : static_cast<RayQuery>(random_() % 2);
-    ask(ray, {.query = query, .budget = 20'000}, known, *uncertified, closed_ ? i % 8 < 2 : true);
+    ask(ray, {.query = query}, {.max_splits = 20'000}, known, *uncertified, closed_ ? i % 8 < 2 : true);
   }
 
-  void ask(const Ray& ray, const RayOptions& options, std::optional<bool> within, std::size_t& uncertified,
-           bool by_twin) {
+  void ask(const Ray& ray, const RayOptions& options, const Run& run, std::optional<bool> within,
+           std::size_t& uncertified, bool by_twin) {
     const auto where = [&] { return case_.name + ": " + testing_text(ray, options); };
     const auto before = std::chrono::steady_clock::now();
-    const RayHits answer = trace(workspace_, ray, options);
+    const RayHits answer = snug::ray(workspace_, ray, options, run);
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
     counts_.seconds += took;
     if (took > counts_.slowest) {
@@ -707,9 +708,9 @@ class CurvedTrials {
     }
     ++counts_.rays;
     counts_.hits += answer.hits.size();
-    counts_.incomplete += !answer.complete;
+    counts_.incomplete += answer.outcome == Outcome::budget_spent;
     EXPECT_TRUE(is_sorted(answer)) << where() << text_of(answer);
-    bool all_certified = answer.complete;
+    bool all_certified = answer.outcome != Outcome::budget_spent;
     int sum = 0;
     std::size_t certified = 0;
     for (const RayHit& hit : answer.hits) {
@@ -770,7 +771,7 @@ class CurvedTrials {
           std::any_of(ranges.begin(), ranges.end(), [&](const auto& range) { return overlap(hit.t, range); }))
           << where << ": certified where there is no surface" << text_of(answer);
     }
-    if (!answer.complete) return;
+    if (answer.outcome == Outcome::budget_spent) return;
     const double end = options.query == RayQuery::all || !answer.certain_hit() ? INFINITY
                        : options.query == RayQuery::any                        ? -INFINITY
                                                                                : answer.hits.back().t.lower;

@@ -138,8 +138,8 @@ void check(const Body& a, const Body& b, const Motion& place_a, const Motion& pl
   } else {
     EXPECT_GE(tolerance, lower) << where;
     EXPECT_GE(answer.distance.upper, lower) << where;
-    EXPECT_LE(nearest_sample((*answer.witness)[0], on_a), a.spacing + slack) << where;
-    EXPECT_LE(nearest_sample((*answer.witness)[1], on_b), b.spacing + slack) << where;
+    EXPECT_LE(nearest_sample((*answer.witness)[0].point, on_a), a.spacing + slack) << where;
+    EXPECT_LE(nearest_sample((*answer.witness)[1].point, on_b), b.spacing + slack) << where;
   }
   // Two samples are not farther apart than this margin: no enclosure may leave either out.
   const Collision beyond = collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b},

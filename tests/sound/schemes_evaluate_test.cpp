@@ -33,10 +33,11 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
       std::map<std::size_t, PatchEvaluator> evaluators;
       SurfaceEvaluator whole(surface);
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, 3)) {
-        const SurfaceParameter place{s.face, s.part, s.u, s.v};
+        const Place place{s.face, s.part, s.u, s.v};
         std::array<BoundedPoint, 1> alone;
         whole.positions(std::array{place}, alone);
-        for (const BoundedPoint& point : {alone[0], BoundedPoint(whole(place))}) {
+        const SurfacePoint same = whole(place);
+        for (const BoundedPoint& point : {alone[0], BoundedPoint{same.point, same.error}}) {
           for (std::size_t k = 0; k < 3; ++k) {
             ASSERT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error)
                 << c.name << ", " << testing::text_of(c.rules) << ", face " << s.face << "." << s.part
@@ -52,10 +53,10 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
           const std::size_t patch = surface.patches_of(s.face).begin + (loop ? 0 : 2 * s.part + half);
           const PatchEvaluator& evaluator =
               evaluators.try_emplace(patch, surface, PatchId(patch)).first->second;
-          const BoundedPoint point = evaluator(at);
+          const SurfacePoint point = evaluator(at);
           ++count;
           for (std::size_t k = 0; k < 3; ++k) {
-            ASSERT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error)
+            ASSERT_LE(std::fabs(point.point[k] - s.position[k]), point.error + s.error)
                 << c.name << ", " << testing::text_of(c.rules) << ", patch " << patch << " at " << at.u
                 << ", " << at.v;
           }
@@ -134,8 +135,8 @@ TEST(limit_evaluator, agrees_with_the_other_half_at_the_fourth_corner) {
       LimitEvaluator first(s.surface.patch(PatchId(p))), second(s.surface.patch(PatchId(p + 1)));
       for (const double far : {0.0, 0x1p-20, 0x1p-40, 0x1p-53}) {
         std::array<BoundedPoint, 1> a, b;
-        first.points(std::array{SurfaceParameter{0, 0, far, 1 - far}}, a);
-        second.points(std::array{SurfaceParameter{0, 0, 1 - far, far}}, b);
+        first.points(std::array{Place{0, 0, far, 1 - far}}, a);
+        second.points(std::array{Place{0, 0, 1 - far, far}}, b);
         ASSERT_LE(max_abs(a[0].position - b[0].position), a[0].error + b[0].error) << where;
         ++count;
       }
@@ -150,7 +151,7 @@ TEST(limit_evaluator, agrees_with_the_other_half_at_the_fourth_corner) {
 }
 
 Vector3 difference(const SurfacePoint& a, const SurfacePoint& b, double h) {
-  return (1 / h) * (a.position - b.position);
+  return (1 / h) * (a.point - b.point);
 }
 
 void expect_near(const Vector3& x, const Vector3& y, double slack, const std::string& where) {
@@ -200,7 +201,7 @@ TEST(patch_evaluator, derivatives_agree_with_differences) {
         };
         const SurfacePoint same = on_quad(0, 0);
         ASSERT_TRUE(same.differentiable) << where;
-        expect_near(same.position - Point3{}, point.position - Point3{}, 1e-12 * s.surface.size(), where);
+        expect_near(same.point - Point3{}, point.point - Point3{}, 1e-12 * s.surface.size(), where);
         expect_near(same.tangents[0], difference(on_quad(h, 0), on_quad(-h, 0), 2 * h), slack, where);
         expect_near(same.tangents[1], difference(on_quad(0, h), on_quad(0, -h), 2 * h), slack, where);
         if (!upright) continue;
@@ -228,8 +229,8 @@ TEST(patch_evaluator, derivatives_at_edges_agree_with_one_sided_differences) {
                                   std::to_string(edge) + " at " + std::to_string(t);
         ASSERT_TRUE(here[edge].differentiable) << where;
         const double slack = 1e-3 * s.surface.size();
-        const Vector3 across = (1 / (2 * h)) * (4.0 * (near[edge].position - here[edge].position) -
-                                                (far[edge].position - here[edge].position));
+        const Vector3 across = (1 / (2 * h)) * (4.0 * (near[edge].point - here[edge].point) -
+                                                (far[edge].point - here[edge].point));
         expect_near(here[edge].tangents[1 - edge], across, slack, where);
         expect_near(here[edge].tangents[edge], difference(right[edge], left[edge], 2 * h), slack, where);
       }

@@ -15,7 +15,7 @@ namespace {
 using testing::NamedSurface;
 
 struct Corner {
-  BoundedPoint at;
+  LimitPoint at;
   std::uint32_t name;
 };
 
@@ -40,10 +40,10 @@ double largest_difference(const Point3& a, const Point3& b) { return max_abs(a -
 
 TEST(corner_names, that_are_equal_stand_for_equal_limit_points) {
   testing::for_each_surface(101, [&](const NamedSurface& s) {
-    std::map<std::uint32_t, BoundedPoint> by_name;
+    std::map<std::uint32_t, LimitPoint> by_name;
     for (const Corner& corner : corners_of(s.surface)) {
-      const BoundedPoint& first = by_name.try_emplace(corner.name, corner.at).first->second;
-      EXPECT_LE(largest_difference(first.position, corner.at.position), first.error + corner.at.error)
+      const LimitPoint& first = by_name.try_emplace(corner.name, corner.at).first->second;
+      EXPECT_LE(largest_difference(first.point, corner.at.point), first.error + corner.at.error)
           << s.name << ", name " << corner.name;
     }
   });
@@ -59,7 +59,7 @@ TEST(corner_names, are_equal_where_patches_meet) {
     const std::vector<Corner> corners = corners_of(s.surface);
     for (const Corner& a : corners) {
       for (const Corner& b : corners) {
-        if (largest_difference(a.at.position, b.at.position) <= 1e-9 * s.surface.size()) {
+        if (largest_difference(a.at.point, b.at.point) <= 1e-9 * s.surface.size()) {
           EXPECT_EQ(a.name, b.name) << s.name;
         }
       }
@@ -68,7 +68,7 @@ TEST(corner_names, are_equal_where_patches_meet) {
 }
 
 // Two limit points of one patch or its pieces, with one origin.
-void expect_same(const LimitPoint& a, const LimitPoint& b, const std::string& where) {
+void expect_same(const RelativePoint& a, const RelativePoint& b, const std::string& where) {
   EXPECT_LE(max_abs(a.relative - b.relative), a.error + b.error) << where;
   EXPECT_LT(a.error + b.error, 1e-11) << where;
 }
@@ -85,7 +85,7 @@ void check_children(const Patch& patch, int levels, const std::string& where, st
     expect_same(corner_point(child[k], k), corner_point(patch, k), where + ", corner " + std::to_string(k));
     // The middles of the edges: 01, 12, 20.
     const std::size_t next = (k + 1) % 3;
-    const LimitPoint middle = corner_point(child[k], next);
+    const RelativePoint middle = corner_point(child[k], next);
     expect_same(corner_point(child[next], k), middle, where + ", edge " + std::to_string(k));
     const std::size_t facing =
         (k + 2) % 3;  // the middle child's corner i lies on the edge that faces corner i
@@ -107,7 +107,7 @@ void check_children(const Patch& patch, int levels, const std::string& where, st
       const TriangleParameter on_whole = to_face(path.child(k), at);
       const std::string here = where + ", child " + std::to_string(k) + " at " + std::to_string(at.u) + ", " +
                                std::to_string(at.v);
-      const LimitPoint expected = limit_point(patch, on_whole);
+      const RelativePoint expected = limit_point(patch, on_whole);
       expect_same(limit_point(child[k], at), expected, here);
       expect_same(evaluated(part, at), expected, here);
       expect_same(evaluated(whole, on_whole), expected, here);

@@ -41,14 +41,14 @@ bool contains(const PieceEnclosure& piece, const Sample& s, const char*& what) {
 std::vector<BoundOptions> bound_options(const LimitSurface& surface) {
   std::vector<BoundOptions> list(3);
   list[1].level = 2;
-  list[2].tolerance = surface.size() > 0 ? 0.2 * surface.size() : 1;
-  for (BoundOptions& options : list) options.threads = 1;
+  list[2].error = surface.size() > 0 ? 0.2 * surface.size() : 1;
   return list;
 }
 
 std::vector<Pieces> pieces_of(const LimitSurface& surface, const BoundOptions& options) {
   std::vector<Pieces> pieces(surface.patch_count());
-  bound(surface, options, [&](const PieceEnclosure& e) { pieces[e.patch.index()][e.path.text()] = e; });
+  bound(surface, options, [&](const PieceEnclosure& e) { pieces[e.patch.index()][e.path.text()] = e; },
+        {.threads = 1});
   return pieces;
 }
 
@@ -103,11 +103,11 @@ void check_primal(const testing::TaggedCase& c, int levels, const std::shared_pt
     ++counted.samples;
     const std::string where = name + ", face " + std::to_string(s.face) + "." + std::to_string(s.part) +
                               " at " + std::to_string(s.u) + ", " + std::to_string(s.v);
-    const SurfaceParameter at{s.face, s.part, s.u, s.v};
+    const Place at{s.face, s.part, s.u, s.v};
     ASSERT_TRUE(patch_at(surface, at)) << where;
     const SurfacePoint point = evaluator(at);
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error) << where;
+      EXPECT_LE(std::fabs(point.point[k] - s.position[k]), point.error + s.error) << where;
     }
     counted.worst_error = std::max(counted.worst_error, point.error / surface.size());
     for (unsigned half = 0; half < (loop ? 1u : 2u); ++half) {
@@ -257,7 +257,7 @@ void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme 
             const Sample& sample = samples[owner][s];
             bool near = true;
             for (std::size_t k = 0; k < 3; ++k) {
-              near = near && std::fabs(point.position[k] - sample.position[k]) <= point.error + sample.error;
+              near = near && std::fabs(point.point[k] - sample.position[k]) <= point.error + sample.error;
             }
             if (near) met[s] = any = true;
           }

@@ -1,11 +1,11 @@
 // self_contact() with a tolerance: sheets, spheres, folds, bodies and boundaries whose distances are known.
 
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/error.h>
 #include <snug/query/self_near.h>
+#include <snug/run.h>
 #include <testing/tagged.h>
 
 #include <cmath>
@@ -70,8 +70,9 @@ oracle::TaggedMesh fold(double gap, Faces faces) {
   return strip(profile, 0.6, 2, faces);
 }
 
-SelfContact ask(const oracle::TaggedMesh& mesh, Scheme scheme, const SelfContactOptions& options) {
-  return self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), options);
+SelfContact ask(const oracle::TaggedMesh& mesh, Scheme scheme, const SelfContactOptions& options,
+                const Run& run = {}) {
+  return self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), options, run);
 }
 
 bool suits(Scheme scheme, Faces faces) {
@@ -89,14 +90,14 @@ TEST(self_near, sheets_are_near_from_their_gap_on) {
     for (const Scheme scheme : all_schemes) {
       if (!suits(scheme, faces)) continue;
       // Places that are undecided anyway stay so.
-      const SelfVerdict plain = ask(mesh, scheme, {.budget = 5000}).verdict;
+      const SelfVerdict plain = ask(mesh, scheme, {}, {.max_splits = 5000}).verdict;
       ASSERT_NE(plain, SelfVerdict::intersecting);
       for (const double part : {0.9, 1.1}) {
         for (const double radius : {2.5, 4.0}) {
           if (radius < 4 && scheme != Scheme::loop) continue;
           const double tolerance = part * gap;
           const SelfContact found =
-              ask(mesh, scheme, {.tolerance = tolerance, .radius = radius * tolerance, .budget = 100'000});
+              ask(mesh, scheme, {.within = tolerance, .radius = radius * tolerance}, {.max_splits = 100'000});
           const std::string name = std::string(name_of(scheme)) + ", " + text_of(faces) + ", " +
                                    std::to_string(part) + ", " + std::to_string(radius);
           EXPECT_EQ(found.radius, radius * tolerance);
@@ -109,13 +110,14 @@ TEST(self_near, sheets_are_near_from_their_gap_on) {
           ASSERT_EQ(found.verdict, SelfVerdict::near) << name;
           for (const SelfContactPair& pair : found.pairs) {
             EXPECT_EQ(pair.verdict, SelfVerdict::near);
-            const double d = distance(pair.points[0], pair.points[1]);
+            const double d = distance(pair.points[0].point, pair.points[1].point);
             EXPECT_LE(d, tolerance * (1 + 1e-12)) << name;
             EXPECT_LE(pair.distance.lower, d * (1 + 1e-12)) << name;
             EXPECT_LE(pair.distance.upper, tolerance * (1 + 1e-12)) << name;
             // On the two legs: the way leads around the bend.
-            EXPECT_GT(std::fabs(pair.points[0].z - pair.points[1].z), 0.5 * gap) << name;
-            EXPECT_GT(pair.points[0].x + pair.points[1].x + 1.6 * gap, radius * tolerance) << name;
+            EXPECT_GT(std::fabs(pair.points[0].point.z - pair.points[1].point.z), 0.5 * gap) << name;
+            EXPECT_GT(pair.points[0].point.x + pair.points[1].point.x + 1.6 * gap, radius * tolerance)
+                << name;
           }
         }
       }
@@ -132,11 +134,11 @@ TEST(self_near, round_bodies_are_never_near_themselves) {
       if (scheme == Scheme::loop) body = meshes::triangulated(body);
       for (const double tolerance : {0.01, 0.3, 1e9}) {
         const SelfContact found =
-            ask(body, scheme, {.tolerance = tolerance, .radius = 2 * tolerance, .budget = 10'000});
+            ask(body, scheme, {.within = tolerance, .radius = 2 * tolerance}, {.max_splits = 10'000});
         EXPECT_NE(found.verdict, SelfVerdict::near) << name_of(scheme) << " " << n << " " << tolerance;
         // With room for ways that are not quite the shortest ones.
         if (scheme == Scheme::catmark && n == 4) {
-          EXPECT_EQ(ask(body, scheme, {.tolerance = tolerance}).verdict, SelfVerdict::clear)
+          EXPECT_EQ(ask(body, scheme, {.within = tolerance}).verdict, SelfVerdict::clear)
               << n << " " << tolerance;
         }
       }
@@ -156,10 +158,10 @@ TEST(self_near, a_body_beside_another_is_far_along_the_surface) {
     both.polygons.push_back(face);
   }
   // The hulls are 0.5 apart, the middles of their faces less than 1.2.
-  EXPECT_EQ(ask(both, Scheme::catmark, {.tolerance = 1.2}).verdict, SelfVerdict::near);
-  EXPECT_EQ(ask(both, Scheme::catmark, {.tolerance = 1.2, .radius = 1e300}).verdict, SelfVerdict::near);
-  EXPECT_NE(ask(both, Scheme::catmark, {.tolerance = 0.49, .budget = 100'000}).verdict, SelfVerdict::near);
-  EXPECT_EQ(ask(both, Scheme::catmark, {.tolerance = 0.1, .budget = 100'000}).verdict, SelfVerdict::clear);
+  EXPECT_EQ(ask(both, Scheme::catmark, {.within = 1.2}).verdict, SelfVerdict::near);
+  EXPECT_EQ(ask(both, Scheme::catmark, {.within = 1.2, .radius = 1e300}).verdict, SelfVerdict::near);
+  EXPECT_NE(ask(both, Scheme::catmark, {.within = 0.49}, {.max_splits = 100'000}).verdict, SelfVerdict::near);
+  EXPECT_EQ(ask(both, Scheme::catmark, {.within = 0.1}, {.max_splits = 100'000}).verdict, SelfVerdict::clear);
 }
 
 TEST(self_near, a_wedge_is_near_where_ways_around_its_edge_are_long) {
@@ -174,8 +176,8 @@ TEST(self_near, a_wedge_is_near_where_ways_around_its_edge_are_long) {
         }
         oracle::TaggedMesh mesh = strip(profile, 0.5, 2, faces);
         for (std::uint32_t j = 0; j < 2; ++j) mesh.creases.push_back({8 * 3 + j, 8 * 3 + j + 1, 10});
-        const SelfVerdict plain = ask(mesh, scheme, {.budget = 5000}).verdict;
-        const SelfContact found = ask(mesh, scheme, {.tolerance = 0.2, .budget = 30'000});
+        const SelfVerdict plain = ask(mesh, scheme, {}, {.max_splits = 5000}).verdict;
+        const SelfContact found = ask(mesh, scheme, {.within = 0.2}, {.max_splits = 30'000});
         const std::string name =
             std::string(name_of(scheme)) + ", " + text_of(faces) + ", " + std::to_string(degrees);
         // Chords are sin(half) times the way: R / T = 4.
@@ -230,7 +232,7 @@ TEST(self_near, thin_discs_are_near_themselves_inside) {
       // Thinner than the tolerance, and the way around the rim is at least as long as the disc is wide.
       const double tolerance = 1.05 * height;
       const SelfContact found =
-          ask(disc, Scheme::loop, {.tolerance = tolerance, .radius = 2 * tolerance, .budget = 50'000});
+          ask(disc, Scheme::loop, {.within = tolerance, .radius = 2 * tolerance}, {.max_splits = 50'000});
       if (height <= 0.1) {
         EXPECT_EQ(found.verdict, SelfVerdict::near) << n << " " << height;
       } else {
@@ -245,7 +247,7 @@ TEST(self_near, flat_sheets_with_boundaries_are_clear) {
   for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge, Scheme::loop}) {
     const oracle::TaggedMesh mesh = scheme == Scheme::loop ? meshes::triangulated(sheet) : sheet;
     for (const double tolerance : {1e-6, 0.3, 20.0}) {
-      const SelfContact found = ask(mesh, scheme, {.tolerance = tolerance, .budget = 50'000});
+      const SelfContact found = ask(mesh, scheme, {.within = tolerance}, {.max_splits = 50'000});
       EXPECT_NE(found.verdict, SelfVerdict::near) << name_of(scheme) << " " << tolerance;
       if (scheme == Scheme::catmark && tolerance > 0.1) {
         EXPECT_EQ(found.verdict, SelfVerdict::clear) << tolerance;
@@ -264,15 +266,16 @@ TEST(self_near, what_meets_itself_does_so_with_a_tolerance_too) {
     for (auto& v : face) v += 8;
     both.polygons.push_back(face);
   }
-  EXPECT_EQ(ask(both, Scheme::catmark, {.tolerance = 0.1}).verdict, SelfVerdict::intersecting);
+  EXPECT_EQ(ask(both, Scheme::catmark, {.within = 0.1}).verdict, SelfVerdict::intersecting);
 }
 
 TEST(self_near, does_not_depend_on_threads_scale_or_place) {
   for (const double tolerance : {0.2, 0.4}) {
     const oracle::TaggedMesh mesh = fold(0.3, Faces::triangles);
-    const SelfContact one = ask(mesh, Scheme::loop, {.tolerance = tolerance, .budget = 30'000, .threads = 1});
+    const SelfContact one =
+        ask(mesh, Scheme::loop, {.within = tolerance}, {.threads = 1, .max_splits = 30'000});
     const SelfContact four =
-        ask(mesh, Scheme::loop, {.tolerance = tolerance, .budget = 30'000, .threads = 4});
+        ask(mesh, Scheme::loop, {.within = tolerance}, {.threads = 4, .max_splits = 30'000});
     EXPECT_EQ(one.verdict, four.verdict);
     EXPECT_EQ(one.stars, four.stars);
     EXPECT_EQ(one.pair_tests, four.pair_tests);
@@ -283,7 +286,8 @@ TEST(self_near, does_not_depend_on_threads_scale_or_place) {
       for (auto& p : scaled.points) {
         for (double& x : p) x *= scale;
       }
-      const SelfContact other = ask(scaled, Scheme::loop, {.tolerance = tolerance * scale, .budget = 30'000});
+      const SelfContact other =
+          ask(scaled, Scheme::loop, {.within = tolerance * scale}, {.max_splits = 30'000});
       EXPECT_EQ(other.verdict, one.verdict);
       EXPECT_EQ(other.pair_tests, one.pair_tests);
     }
@@ -304,18 +308,18 @@ TEST(self_near, refuses_lengths_that_are_none) {
                                       (!radius || (std::isfinite(*radius) && *radius / 2 >= *tolerance)));
       try {
         const SelfContact found =
-            ask(mesh, Scheme::catmark, {.tolerance = tolerance, .radius = radius, .budget = 2000});
+            ask(mesh, Scheme::catmark, {.within = tolerance, .radius = radius}, {.max_splits = 2000});
         EXPECT_TRUE(sound) << tolerance.value_or(-7) << " " << radius.value_or(-7);
         EXPECT_NE(found.verdict, SelfVerdict::near);
         EXPECT_NE(found.verdict, SelfVerdict::intersecting);
       } catch (const InputError& error) {
         EXPECT_FALSE(sound) << tolerance.value_or(-7) << " " << radius.value_or(-7);
         EXPECT_EQ(error.problem(), InputProblem::value);
-        EXPECT_NE(std::string(error.what()).find("self:"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("self contact:"), std::string::npos) << error.what();
       }
     }
   }
-  EXPECT_NE(ask(fold(0.3, Faces::quads), Scheme::catmark, {.tolerance = 0.4, .budget = 0}).verdict,
+  EXPECT_NE(ask(fold(0.3, Faces::quads), Scheme::catmark, {.within = 0.4}, {.max_splits = 0}).verdict,
             SelfVerdict::clear);
 }
 

@@ -1,7 +1,7 @@
 // Random closed meshes of every scheme, from smooth to crumpled: none is clear whose refined mesh crosses
 // itself; nearly all that do not are not said to.
 
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
@@ -123,8 +123,8 @@ TEST(self, verdicts_are_those_of_refined_meshes) {
           const bool tagged = trial % 2 == 1 && (scheme == Scheme::loop || scheme == Scheme::catmark);
           if (trial % 2 == 1 && !tagged) continue;
           if (tagged) add_tags(mesh, random);
-          const SelfContact found =
-              self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.budget = 20'000});
+          const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {},
+                                                 {.max_splits = 20'000});
           const std::string name = closed.name + " " + name_of(scheme) + " " + std::to_string(amount);
           const bool crossing = crosses(refined(mesh, scheme), 0.005);
           ++counts[std::string(name_of(found.verdict)) + (crossing ? ", twin crosses" : ", twin does not")];
@@ -229,7 +229,7 @@ TEST(self, folds_are_what_they_are_made_to_be) {
                                      (boundary ? ", on the border, " : ", inside, ") + std::to_string(n) +
                                      " faces, sharpness " + std::to_string(sharpness) + ", " + bend.name;
             const SelfContact found = self_contact(
-                Surface(testing::control_mesh(fan.mesh), {.scheme = scheme}), {.budget = 10'000});
+                Surface(testing::control_mesh(fan.mesh), {.scheme = scheme}), {}, {.max_splits = 10'000});
             ++counts[std::string(bend.name) + ": " + name_of(found.verdict)];
             // A crease inwards makes a corner of a vertex on the border, and one that ends inside a dart; the tangents
             // across both sides of a crease may not both shrink less than that along it. Three triangles are all too
@@ -282,8 +282,8 @@ TEST(self, verdicts_on_borders_are_those_of_refined_meshes) {
             for (double& x : mesh.points[v]) x += amount * (unit(random) - 0.5);
           }
           if (trial % 3 == 2) add_tags(mesh, random);
-          const SelfContact found =
-              self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.budget = 10'000});
+          const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {},
+                                                 {.max_splits = 10'000});
           const bool crossing = crosses(refined(mesh, scheme), 0.005);
           ++counts[std::string(name_of(found.verdict)) + (crossing ? ", twin crosses" : ", twin does not")];
           if (crossing) {

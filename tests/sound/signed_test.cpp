@@ -73,9 +73,9 @@ TEST(signed_distance, agrees_with_refined_meshes) {
         for (std::size_t x = 0; x < 3; ++x) q[x] += between(random, -1, 1) * reach;
         points.push_back(q);
       }
-      ClosestOptions options{.absolute = 0, .relative = 0};
+      Precision options{.absolute = 0, .relative = 0};
       options.absolute = std::exp2(-between(random, 3, 20)) * surface.size();
-      const std::vector<SignedDistance> answers = signed_distances(model, points, options, 1);
+      const std::vector<SignedDistance> answers = signed_distance(model, points, options, {.threads = 1});
       for (std::size_t k = 0; k < points.size(); ++k) {
         const SignedDistance& answer = answers[k];
         const Bounds truth = twin_distance(twin, limit_points, points[k]);
@@ -91,8 +91,8 @@ TEST(signed_distance, agrees_with_refined_meshes) {
           ASSERT_LE(answer.distance.lower, upper + slack) << c.name << ", point " << k;
           ASSERT_GE(answer.distance.upper, lower - slack) << c.name << ", point " << k;
           // Some points run into the budget of pieces.
-          unreached += !answer.reached;
-          if (answer.reached)
+          unreached += answer.outcome != Outcome::complete;
+          if (answer.outcome == Outcome::complete)
             widest = std::max(widest, (answer.distance.upper - answer.distance.lower) / *options.absolute);
         } else {
           ASSERT_LE(std::max(answer.distance.lower, -answer.distance.upper), truth.upper + slack)
@@ -156,7 +156,7 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
         q[x] = std::round(between(random, -16, 16)) / (k % 4 == 0 ? 1 : 2);
         if (k % 3 == 0) q[x] += std::ldexp(between(random, -1, 1), -static_cast<int>(random() % 50));
       }
-      ClosestOptions options{.absolute = 0, .relative = 0};
+      Precision options{.absolute = 0, .relative = 0};
       options.relative = 1e-9;
       const SignedDistance answer = signed_distance(scratch, q, options);
       const oracle::Point exact{q.x, q.y, q.z};

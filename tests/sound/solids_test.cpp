@@ -153,8 +153,8 @@ class Trials {
     }
     if (answer.verdict == Verdict::intersecting) {
       EXPECT_NE(truth, 0) << where;
-      EXPECT_EQ(answer.inner, std::optional<std::size_t>(1)) << where;
-      EXPECT_LE(length((*answer.witness)[0] - q), 4 * r) << where;
+      EXPECT_EQ(answer.contained, std::optional<std::size_t>(1)) << where;
+      EXPECT_LE(length((*answer.witness)[0].point - q), 4 * r) << where;
     }
     EXPECT_NE(answer.verdict, Verdict::within) << where;
     DistanceOptions precision;
@@ -163,12 +163,12 @@ class Trials {
     const Distance gap = distance({model_, scratch_, {}}, {model, scratch, {}}, precision);
     if (truth != 0) {
       EXPECT_EQ(gap.distance.lower, 0) << where;
-      if (gap.inner) {
+      if (gap.contained) {
         EXPECT_EQ(gap.distance.upper, 0) << where;
       }
     } else {
       EXPECT_GT(gap.distance.upper, 0) << where;
-      EXPECT_FALSE(gap.inner) << where;
+      EXPECT_FALSE(gap.contained) << where;
     }
   }
 

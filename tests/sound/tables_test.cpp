@@ -81,13 +81,12 @@ Pieces pieces_of(const LimitSurface& surface, unsigned level) {
   Pieces pieces;
   BoundOptions options;
   options.level = level;
-  options.threads = 1;
   bound(
       surface, options,
       [&](const PieceEnclosure& e) {
         pieces[{e.patch.index(), e.path.text()}] = e;
       },
-      {}, BoundMethod::table);
+      {.threads = 1}, BoundMethod::table);
   return pieces;
 }
 

@@ -22,15 +22,14 @@ using oracle::PrimalScheme;
 
 TessellateOptions to_tolerance(double tolerance) {
   TessellateOptions options;
-  options.tolerance = tolerance;
+  options.error = tolerance;
   options.corners = true;
   options.normals = false;
   return options;
 }
 
 // Weights of corners 1 and 2 at a parameter of a triangle's owner; nothing if it lies outside.
-std::optional<std::array<double, 2>> weights_at(const std::array<SurfaceParameter, 3>& corner, double u,
-                                                double v) {
+std::optional<std::array<double, 2>> weights_at(const std::array<Place, 3>& corner, double u, double v) {
   const double bu = corner[1].u - corner[0].u, bv = corner[1].v - corner[0].v, cu = corner[2].u - corner[0].u,
                cv = corner[2].v - corner[0].v, pu = u - corner[0].u, pv = v - corner[0].v;
   const double whole = bu * cv - cu * bv, b = (pu * cv - cu * pv) / whole, c = (bu * pv - pu * bv) / whole;
@@ -176,13 +175,12 @@ TEST(tessellate, holds_in_every_disguise) {
       95, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64&) {
         if (!(surface.size() > 0)) return;
         TessellateOptions options = to_tolerance(0.05 * surface.size());
-        options.budget = 20'000;
         try {
-          const Tessellation t = tessellate(surface, options);
+          const Tessellation t = tessellate(surface, options, {.max_splits = 20'000});
           testing::expect_watertight(surface, t, name);
           if (::testing::Test::HasFatalFailure()) return;
-          if (t.reached) {
-            EXPECT_LE(t.error_bound, *options.tolerance) << name;
+          if (t.outcome == Outcome::complete) {
+            EXPECT_LE(t.error_bound, *options.error) << name;
           }
           // Distances are computed near 1, and evaluation too.
           if (surface.scale().moderate()) testing::expect_near(surface, t, name, 2);

@@ -73,8 +73,8 @@ TEST(time_of_contact, no_points_of_loop_surfaces_meet_before) {
     const TimeOfContact found =
         time_of_contact({a.model, a.scratch, of_a}, {b.model, b.scratch, of_b}, {.tolerance = tolerance});
     ++verdicts[static_cast<std::size_t>(found.verdict)];
-    wide += !found.reached;
-    looks.push_back(found.looks);
+    wide += found.outcome != Outcome::complete;
+    looks.push_back(found.steps);
     const std::string what = "trial " + std::to_string(trial);
     const auto bounds_at = [&](double t) {
       const oracle::ContactGoal goal{{1e-10 * size, 0}, 1e-9 * size, 20'000};

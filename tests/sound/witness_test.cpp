@@ -26,16 +26,17 @@ using testing::NamedSurface;
 using testing::unit;
 
 // The general evaluation at the very doubles of a place.
-void expect_on(const LimitSurface& surface, const Motion& pose, const std::optional<SurfaceParameter>& at,
-               const Point3& witness, double error, const std::string& where) {
+void expect_on(const LimitSurface& surface, const Motion& pose, const LimitPoint& witness,
+               const std::string& where) {
+  const std::optional<Place>& at = witness.at;
   ASSERT_TRUE(at) << where;
   ASSERT_TRUE(patch_at(surface, *at)) << where << " u " << at->u << " v " << at->v;
   const SurfacePoint point = evaluate(surface, *at);
-  const Point3 placed = pose.apply(point.position);
+  const Point3 placed = pose.apply(point.point);
   // Parameters are rounded to 2^-51; around many faces points move by more than parameters do.
   const double rounding = 1e-11 * (surface.size() + max_abs(pose.offset()));
   for (std::size_t k = 0; k < 3; ++k) {
-    ASSERT_NEAR(placed[k], witness[k], error + 2 * point.error + rounding)
+    ASSERT_NEAR(placed[k], witness.point[k], witness.error + 2 * point.error + rounding)
         << where << " face " << at->owner << " corner " << at->corner << " u " << at->u << " v " << at->v;
   }
 }
@@ -57,27 +58,28 @@ TEST(witnesses, lie_where_they_say_with_every_scheme) {
       CollideOptions options = testing::verdict_only();
       options.tolerance = 0.01 * s.surface.size();
       options.measure = trial != 1;
-      options.budget = 3000;
-      const Collision met = collide(placed_a, placed_b, options);
+      const Collision met = collide(placed_a, placed_b, options, {.max_splits = 3000});
       if (met.witness) {
-        expect_on(s.surface, a, met.at[0], (*met.witness)[0], met.witness_error, s.name);
-        expect_on(s.surface, b, met.at[1], (*met.witness)[1], met.witness_error, s.name);
+        expect_on(s.surface, a, (*met.witness)[0], s.name);
+        expect_on(s.surface, b, (*met.witness)[1], s.name);
       }
       if (met.verdict == Verdict::separated && options.measure) {
         ASSERT_TRUE(std::isfinite(met.distance.upper) && met.witness) << s.name;
         EXPECT_GE(met.distance.lower, met.distance.upper / 2) << s.name;
-        EXPECT_LE(distance((*met.witness)[0], (*met.witness)[1]), met.distance.upper * (1 + 1e-12)) << s.name;
+        EXPECT_LE(distance((*met.witness)[0].point, (*met.witness)[1].point),
+                  met.distance.upper * (1 + 1e-12))
+            << s.name;
       }
       DistanceOptions precise;
       precise.absolute = 1e-3 * s.surface.size();
-      precise.budget = 1000;
-      const Distance apart = distance(placed_a, placed_b, precise);
-      expect_on(s.surface, a, apart.at[0], apart.witness[0], apart.witness_error, s.name);
-      expect_on(s.surface, b, apart.at[1], apart.witness[1], apart.witness_error, s.name);
+      const snug::Run run{.max_splits = 1000};
+      const Distance apart = distance(placed_a, placed_b, precise, run);
+      expect_on(s.surface, a, apart.witness[0], s.name);
+      expect_on(s.surface, b, apart.witness[1], s.name);
       const ClosestPoint near =
           closest_point(one, Point3{} + testing::random_vector(random, 2 * s.surface.size()),
-                        {.absolute = precise.absolute, .relative = {}, .budget = precise.budget});
-      expect_on(s.surface, {}, near.at, near.point, near.point_error, s.name);
+                        {.absolute = precise.absolute, .relative = {}}, run);
+      expect_on(s.surface, {}, near, s.name);
       asked += 3;
     }
   });
@@ -104,13 +106,13 @@ TEST(witnesses, lie_between_the_samples_of_the_twin) {
       for (int trial = 0; trial < 40; ++trial) {
         const Point3 to = Point3{} + testing::random_vector(random, 2 * surface.size());
         const ClosestPoint near = closest_point(scratch, to, {1e-3 * surface.size(), 0});
-        const auto& around = samples.at({near.at.owner, near.at.corner});
+        const auto& around = samples.at({near.at->owner, near.at->corner});
         // The samples around the place, those of split polygons twice as far apart: their box, made half as
         // large again, holds the point.
         const double h = 1.5 / (1 << (level - 1));
         Box3 box;
         for (const oracle::FaceSample& s : around) {
-          if (std::fabs(s.u - near.at.u) > h || std::fabs(s.v - near.at.v) > h) continue;
+          if (std::fabs(s.u - near.at->u) > h || std::fabs(s.v - near.at->v) > h) continue;
           box.add(Point3{s.position[0], s.position[1], s.position[2]});
         }
         ASSERT_FALSE(box.empty()) << c.name;

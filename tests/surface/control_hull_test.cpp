@@ -36,7 +36,7 @@ TEST(control_hull, contains_limit_points_of_its_patches) {
                 i < 3
                     ? std::array<TriangleParameter, 3>{{{0, 0}, {1, 0}, {0, 1}}}[static_cast<std::size_t>(i)]
                     : testing::random_parameter(random);
-            const LimitPoint point = limit_point(patch, at);
+            const RelativePoint point = limit_point(patch, at);
             const double height = dot(direction, patch.origin + point.relative - Point3{});
             ++samples;
             ASSERT_LE(extent.lower, height + 2 * point.error + 1e-15) << named.name;
@@ -68,7 +68,7 @@ TEST(control_balls, contain_limit_points_of_their_patches) {
       }
       const Patch patch = surface.patch(patches[i]);
       for (int k = 0; k < 6; ++k) {
-        const LimitPoint point = limit_point(patch, testing::random_parameter(random));
+        const RelativePoint point = limit_point(patch, testing::random_parameter(random));
         ++samples;
         ASSERT_LE(distance(patch.origin + point.relative, balls[i].centre),
                   balls[i].radius + 2 * point.error + 1e-15)
@@ -122,7 +122,7 @@ TEST(piece, heights_hold_the_piece) {
         const Piece& piece = known.piece;
         const Vector3 normal = unit_normal(piece.offset.base);
         for (int i = 0; i < 10; ++i) {
-          const LimitPoint point = limit_point(piece.patch, testing::random_parameter(random));
+          const RelativePoint point = limit_point(piece.patch, testing::random_parameter(random));
           const double height = dot(normal, piece.patch.origin + point.relative - piece.offset.base[0]);
           ASSERT_LE(known.heights.lower, height + 2 * point.error + 1e-15) << named.name;
           ASSERT_GE(known.heights.upper, height - 2 * point.error - 1e-15) << named.name;

@@ -23,10 +23,10 @@ TEST(evaluate, holds_its_error_at_every_scale) {
     const LimitSurface surface = testing::surface_of(twin);
     for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 2)) {
       const SurfacePoint point = evaluate(surface, {s.face, 0, s.u, s.v});
-      const BoundedPoint alone = PatchEvaluator(surface, PatchId(s.face))(TriangleParameter{s.u, s.v});
+      const SurfacePoint alone = PatchEvaluator(surface, PatchId(s.face))(TriangleParameter{s.u, s.v});
       for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error);
-        EXPECT_LE(std::fabs(alone.position[k] - s.position[k]), alone.error + s.error);
+        EXPECT_LE(std::fabs(point.point[k] - s.position[k]), point.error + s.error);
+        EXPECT_LE(std::fabs(alone.point[k] - s.position[k]), alone.error + s.error);
       }
       EXPECT_LT(point.error, 1e-13 * size + 1e-307);
       ASSERT_TRUE(point.normal);
@@ -50,9 +50,9 @@ LimitSurface mixed_surface(Scheme scheme, double scale = 1) {
 }
 
 // Many a face, corners and edges among them, in random order.
-std::vector<SurfaceParameter> shuffled_places(const LimitSurface& surface, std::size_t a_patch) {
+std::vector<Place> shuffled_places(const LimitSurface& surface, std::size_t a_patch) {
   std::mt19937_64 random(4);
-  std::vector<SurfaceParameter> places;
+  std::vector<Place> places;
   for (std::uint32_t owner = 0; owner < surface.owner_count(); ++owner) {
     const auto [begin, end] = surface.patches_of(owner);
     if (begin == end || !surface.has_patch(PatchId(begin))) continue;
@@ -75,7 +75,7 @@ constexpr std::array every_scheme{Scheme::loop,    Scheme::catmark,  Scheme::doo
                                   Scheme::midedge, Scheme::bilinear, Scheme::flat};
 
 void expect_same_bits(const SurfacePoint& a, const SurfacePoint& b, const std::string& where) {
-  EXPECT_EQ(a.position, b.position) << where;
+  EXPECT_EQ(a.point, b.point) << where;
   EXPECT_EQ(a.error, b.error) << where;
   EXPECT_EQ(a.tangents, b.tangents) << where;
   EXPECT_EQ(a.differentiable, b.differentiable) << where;
@@ -86,7 +86,7 @@ void expect_same_bits(const SurfacePoint& a, const SurfacePoint& b, const std::s
 TEST(evaluate_many, answers_as_one_by_one_in_any_order_whatever_the_threads) {
   for (const Scheme scheme : every_scheme) {
     const LimitSurface surface = mixed_surface(scheme);
-    std::vector<SurfaceParameter> places = shuffled_places(surface, 200);
+    std::vector<Place> places = shuffled_places(surface, 200);
     for (const bool sorted : {false, true}) {
       if (sorted) {
         std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
@@ -94,7 +94,7 @@ TEST(evaluate_many, answers_as_one_by_one_in_any_order_whatever_the_threads) {
         });
       }
       std::vector<SurfacePoint> alone;
-      for (const SurfaceParameter& at : places) alone.push_back(evaluate(surface, at));
+      for (const Place& at : places) alone.push_back(evaluate(surface, at));
       for (const int threads : {1, 2, 3, 8}) {
         const std::vector<SurfacePoint> together = evaluate(surface, places, threads);
         ASSERT_EQ(together.size(), places.size());
@@ -109,7 +109,7 @@ TEST(evaluate_many, answers_as_one_by_one_in_any_order_whatever_the_threads) {
 TEST(evaluate_many, gives_the_same_bits_on_every_instruction_set) {
   for (const Scheme scheme : every_scheme) {
     const LimitSurface surface = mixed_surface(scheme);
-    const std::vector<SurfaceParameter> places = shuffled_places(surface, 60);
+    const std::vector<Place> places = shuffled_places(surface, 60);
     const std::vector<SurfacePoint> first = evaluate(surface, places, 1);
     std::size_t sets = 0;
     testing::EachInstructionSet().run([&](const char* name) {
@@ -123,9 +123,8 @@ TEST(evaluate_many, gives_the_same_bits_on_every_instruction_set) {
 
 TEST(evaluate_many, refuses_a_place_that_is_not_there_among_others) {
   const LimitSurface surface = mixed_surface(Scheme::catmark);
-  for (const SurfaceParameter wrong :
-       {SurfaceParameter{1000, 0, 0, 0}, {0, 9, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, NAN}}) {
-    std::vector<SurfaceParameter> places = shuffled_places(surface, 50);
+  for (const Place wrong : {Place{1000, 0, 0, 0}, {0, 9, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, NAN}}) {
+    std::vector<Place> places = shuffled_places(surface, 50);
     places[places.size() / 2] = wrong;
     EXPECT_THROW(static_cast<void>(evaluate(surface, places, 2)), InputError);
     std::vector<float> out(3 * places.size());
@@ -137,7 +136,7 @@ TEST(evaluate_in_single_precision, holds_its_error) {
   for (const Scheme scheme : every_scheme) {
     for (const double scale : {0x1p-146, 0x1p-130, 1.0, 0x1p100}) {
       const LimitSurface surface = mixed_surface(scheme, scale);
-      const std::vector<SurfaceParameter> places = shuffled_places(surface, 100);
+      const std::vector<Place> places = shuffled_places(surface, 100);
       std::vector<float> positions(3 * places.size()), normals(3 * places.size()), alone(3 * places.size());
       const double error = evaluate(surface, places, {positions, normals}, 2);
       EXPECT_EQ(evaluate(surface, places, {alone}, 1), error);
@@ -147,7 +146,7 @@ TEST(evaluate_in_single_precision, holds_its_error) {
         const SurfacePoint point = evaluate(surface, places[i]);
         Vector3 off = point.normal.value_or(Vector3{});
         for (std::size_t a = 0; a < 3; ++a) {
-          EXPECT_LE(std::fabs(static_cast<double>(positions[3 * i + a]) - point.position[a]) + point.error,
+          EXPECT_LE(std::fabs(static_cast<double>(positions[3 * i + a]) - point.point[a]) + point.error,
                     error);
           off[a] -= static_cast<double>(normals[3 * i + a]);
         }
@@ -159,7 +158,7 @@ TEST(evaluate_in_single_precision, holds_its_error) {
 
 TEST(evaluate_in_single_precision, refuses_what_does_not_fit) {
   const LimitSurface surface = mixed_surface(Scheme::catmark, 0x1p130);
-  const std::vector<SurfaceParameter> places = shuffled_places(surface, 10);
+  const std::vector<Place> places = shuffled_places(surface, 10);
   std::vector<float> out(3 * places.size());
   try {
     evaluate(surface, places, {out}, 1);
@@ -172,7 +171,7 @@ TEST(evaluate_in_single_precision, refuses_what_does_not_fit) {
 TEST(evaluate, of_flat_and_bilinear_faces_is_linear_between_their_corners) {
   for (const Scheme scheme : {Scheme::flat, Scheme::bilinear}) {
     const LimitSurface surface = mixed_surface(scheme);
-    for (const SurfaceParameter& at : shuffled_places(surface, 60)) {
+    for (const Place& at : shuffled_places(surface, 60)) {
       const auto face = surface.mesh().face(FaceId(at.owner));
       if (face.size() > 4 || (scheme == Scheme::bilinear && face.size() == 3)) continue;
       const auto corner = [&](std::size_t k) { return surface.mesh().points[face[k].index()]; };
@@ -183,7 +182,7 @@ TEST(evaluate, of_flat_and_bilinear_faces_is_linear_between_their_corners) {
       Vector3 sum;
       for (std::size_t k = 0; k < face.size(); ++k) sum = sum + weights[k] * (corner(k) - Point3{});
       const SurfacePoint point = evaluate(surface, at);
-      EXPECT_LE(max_abs(point.position - (Point3{} + sum)), point.error + 1e-15);
+      EXPECT_LE(max_abs(point.point - (Point3{} + sum)), point.error + 1e-15);
       EXPECT_TRUE(point.differentiable);
     }
   }

@@ -33,7 +33,7 @@ void expect_near(const LimitSurface& surface, const std::vector<QuadraticPiece>&
     Patch patch = surface.patch(piece.root);
     for (unsigned l = 0; l < piece.path.level(); ++l) patch = split(patch, piece.path.digit(l));
     const TriangleParameter at = testing::random_parameter(random);
-    const LimitPoint point = limit_point(patch, at);
+    const RelativePoint point = limit_point(patch, at);
     EXPECT_LE(distance(point.from(patch.origin).position, point_of(piece.quadratic, at)),
               piece.quadratic.error + spatial_error(point.error) + 1e-15);
   }

@@ -204,8 +204,8 @@ struct Tally {
   std::vector<int> looks;  // with a usual tolerance
   void add(const TimeOfContact& found, bool usual = true) {
     ++verdicts[static_cast<std::size_t>(found.verdict)];
-    wide += !found.reached;
-    if (usual) looks.push_back(found.looks);
+    wide += found.outcome != Outcome::complete;
+    if (usual) looks.push_back(found.steps);
   }
   [[nodiscard]] int median() {
     std::sort(looks.begin(), looks.end());
@@ -255,7 +255,7 @@ inline Tally points_that_meet(std::uint64_t seed, std::size_t count, std::uint64
     SurfaceWorkspace scratch_a(a.model), scratch_b(still.model);
     const TimeOfContact found = time_of_contact(
         {a.model, scratch_a, motion_a, way_a == 0 ? std::span<const Point3>{} : a.end},
-        {still.model, scratch_b, motion_b, still.end}, {.tolerance = tolerance, .budget = budget});
+        {still.model, scratch_b, motion_b, still.end}, {.tolerance = tolerance}, {.max_splits = budget});
     const std::string what = "trial " + std::to_string(trial) + ": " + a.name + " by way " +
                              std::to_string(way_a) + ", " + still.name + " by way " + std::to_string(way_b) +
                              ", placed by " + std::to_string(placing_a) + " and " + std::to_string(placing_b);

@@ -646,7 +646,7 @@ void GroundTrials::make_moved(GroundSide& side, const SurfaceBvhOptions& options
   const Ball& ball = side.model->ball();
   const Point3 from =
       std::isfinite(ball.radius) ? ball.centre + ball.radius * Vector3{1, 0.5, 0.25} : Point3{};
-  static_cast<void>(closest_point(*side.scratch, from, {.relative = 1e-2, .budget = 30}));
+  static_cast<void>(closest_point(*side.scratch, from, {.relative = 1e-2}, {.max_splits = 30}));
   side.surface->move(here);
   side.model->refit(side.plan);
   side.scratch->renew(*side.model);

@@ -35,8 +35,8 @@ namespace snug::testing {
 }
 
 /// The mesh edge under the line between two parameters of an owner; nothing for a line inside.
-[[nodiscard]] inline std::optional<EdgeId> edge_under(const LimitSurface& surface, const SurfaceParameter& a,
-                                                      const SurfaceParameter& b) {
+[[nodiscard]] inline std::optional<EdgeId> edge_under(const LimitSurface& surface, const Place& a,
+                                                      const Place& b) {
   const Topology& topology = surface.topology();
   const bool primal = surface.rules().primal;
   // Between corner k and the next one.
@@ -113,8 +113,7 @@ inline void expect_watertight(const LimitSurface& surface, const Tessellation& t
   }
 }
 
-[[nodiscard]] inline SurfaceParameter between(const std::array<SurfaceParameter, 3>& corner, double b,
-                                              double c) {
+[[nodiscard]] inline Place between(const std::array<Place, 3>& corner, double b, double c) {
   const auto mix = [&](double x, double y, double z) { return x + b * (y - x) + c * (z - x); };
   return {corner[0].owner, corner[0].corner, std::clamp(mix(corner[0].u, corner[1].u, corner[2].u), 0.0, 1.0),
           std::clamp(mix(corner[0].v, corner[1].v, corner[2].v), 0.0, 1.0)};
@@ -141,10 +140,10 @@ inline double expect_near(const LimitSurface& surface, const Tessellation& t, co
     for (int p = 0; p <= steps; ++p) {
       for (int q = 0; p + q <= steps; ++q) {
         const double b = p / static_cast<double>(steps), c = q / static_cast<double>(steps);
-        SurfaceParameter at = between(t.corners[i], b, c);
+        Place at = between(t.corners[i], b, c);
         if (surface.rules().triangular()) at.v = std::min(at.v, 1 - at.u);
         const SurfacePoint point = evaluator(at);
-        const double found = distance_at(t, i, b, c, {point.position.x, point.position.y, point.position.z});
+        const double found = distance_at(t, i, b, c, {point.point.x, point.point.y, point.point.z});
         largest = std::max(largest, found);
         // Weights and parameters are rounded, by far less than the surface moves.
         const double slack = 1.8 * point.error + 1e-12 * t.error_bound + 0x1p-48 * surface.size();
@@ -152,7 +151,7 @@ inline double expect_near(const LimitSurface& surface, const Tessellation& t, co
         if (p == steps || q == steps || p + q == 0) {
           const std::size_t k = p == steps ? 1 : q == steps ? 2 : 0;
           for (std::size_t a = 0; a < 3; ++a) {
-            EXPECT_LE(std::fabs(t.positions[t.triangles[i][k]][a] - point.position[a]),
+            EXPECT_LE(std::fabs(t.positions[t.triangles[i][k]][a] - point.point[a]),
                       t.position_error + point.error)
                 << name << ", vertex " << t.triangles[i][k];
           }

@@ -3,6 +3,8 @@ export type Pose = readonly number[] | Float64Array;
 export type Point = [number, number, number];
 /** Contains the exact value. */
 export type Interval = [lower: number, upper: number];
+/** How a search ended; answers hold in any case. */
+export type Outcome = "complete" | "budget-spent" | "at-rounding";
 export type Verdict = "separated" | "within" | "intersecting" | "undecided";
 export type Scheme = "loop" | "catmark" | "doo-sabin" | "midedge" | "bilinear" | "flat";
 export type Boundary = "none" | "edge-only" | "edge-and-corner";
@@ -53,7 +55,7 @@ export interface PairOptions {
   poseB?: Pose;
   /** Compare the solids that closed surfaces bound: one inside the other intersects it. */
   solid?: boolean;
-  budget?: number;
+  maxSplits?: number;
 }
 export interface CollideOptions extends PairOptions {
   /** Surfaces this close may be reported as within. Default: 0.1 % of the larger size. */
@@ -63,13 +65,14 @@ export interface CollideOptions extends PairOptions {
 }
 export interface DistanceOptions extends PairOptions {
   /** Largest width of the interval. Default: 0.01 % of the larger size. */
-  precision?: number;
+  absolute?: number;
   /** Or this fraction of its upper end. */
   relative?: number;
 }
 
 export interface Collision {
   verdict: Verdict;
+  outcome: Outcome;
   /** The upper end is Infinity if no pair of points was near enough to matter. */
   distance: Interval;
   /** The two closest points found, on A and on B. */
@@ -78,29 +81,29 @@ export interface Collision {
   witnessError: number | null;
   witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
   /** With solid: 0 if A has a surface point inside B, 1 the other way round. */
-  inner: 0 | 1 | null;
+  contained: 0 | 1 | null;
   stats: SearchStats;
 }
 export interface Distance {
   distance: Interval;
-  reached: boolean;
+  outcome: Outcome;
   witness: [Point, Point];
   witnessError: number;
   witnessAt: [WitnessPlace | null, WitnessPlace | null];
-  inner: 0 | 1 | null;
+  contained: 0 | 1 | null;
   stats: SearchStats;
 }
 export interface Penetration {
   depth: Interval;
   /** To be added to B's pose: proved to separate the solids. */
   translation: Point;
-  reached: boolean;
+  outcome: Outcome;
 }
 export interface ClosestPoint {
   distance: Interval;
-  reached: boolean;
+  outcome: Outcome;
   point: Point;
-  pointError: number;
+  error: number;
   at: Place;
 }
 
@@ -126,21 +129,21 @@ export interface Tessellation {
   owners: Uint32Array;
   /** Proved, both ways. */
   errorBound: number;
-  reached: boolean;
+  outcome: Outcome;
 }
 export interface BoundOptions {
   /** Split until each radius is at most half of this. */
-  tolerance?: number;
-  /** Without a tolerance: split every patch this many times. */
+  error?: number;
+  /** Without it: split every patch this many times. */
   level?: number;
-  budget?: number;
+  maxSplits?: number;
 }
 /** Of piece i: base has 9 numbers, three corners of the triangle whose sweep by radius[i] contains it; lower and upper have 9
  *  numbers each, three boxes whose hull contains it, too. */
 export interface Enclosures {
   count: number;
   maxRadius: number;
-  reached: boolean;
+  outcome: Outcome;
   owners: Uint32Array;
   parts: Uint32Array;
   levels: Uint32Array;
@@ -166,8 +169,8 @@ export interface Hull {
 export interface Hulls {
   inner: Hull | null;
   outer: Hull | null;
-  /** Are they proved not to meet the surface, each other and themselves? */
-  verified: boolean;
+  /** "complete": they are proved not to meet the surface, each other and themselves. */
+  outcome: Outcome;
   closed: boolean;
   problems: { fault: string; inner: boolean; place: Point; owner: number | null }[];
 }
@@ -183,24 +186,24 @@ export interface Surface {
   cage(): Cage;
   samples(level?: number): Samples;
   tessellate(options: {
-    tolerance?: number;
+    error?: number;
     maxEdge?: number;
     maxAngle?: number;
     maxTriangles?: number;
-    budget?: number;
+    maxSplits?: number;
   }): Tessellation;
   enclosures(options?: BoundOptions): Enclosures;
   enclosureShapes(options?: BoundOptions): EnclosureShapes;
-  hulls(options?: { tolerance?: number; inner?: boolean; outer?: boolean; budget?: number }): Hulls;
+  hull(options?: { error?: number; inner?: boolean; outer?: boolean; maxSplits?: number }): Hulls;
   /** signed: negative inside a closed surface. */
   closestPoint(
     point: Point | readonly number[],
-    options?: { precision?: number; relative?: number; signed?: boolean; budget?: number },
+    options?: { absolute?: number; relative?: number; signed?: boolean; maxSplits?: number },
   ): ClosestPoint;
   /** How far the limit surface may be from the faces of its control mesh; null with a dual scheme. */
   limitToFaces(): number | null;
   /** volume is null unless the surface is closed. */
-  measure(options?: { relative?: number }): { area: Interval; volume: Interval | null; reached: boolean };
+  measure(options?: { relative?: number; maxSplits?: number }): { area: Interval; volume: Interval | null; outcome: Outcome };
   delete(): void;
 }
 
@@ -210,7 +213,7 @@ export interface SnugModule {
   collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
   distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;
   /** Of two closed surfaces: the shortest translation that separates the solids. */
-  penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number; budget?: number }): Penetration;
+  penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number; maxSplits?: number }): Penetration;
   /** after: a pose to begin with; then rotated about an axis (z) through the origin, then moved. */
   pose(steps: { after?: Pose; axis?: readonly number[]; degrees?: number; move?: readonly number[] }): number[];
   /** About six digits of a lower bound, rounded down, and of an upper one, rounded up, as the command prints them. */

@@ -77,8 +77,8 @@ export default async function Snug({ wasm } = {}) {
     enclosureShapes(options = {}) {
       return checked(module.enclosureShapes(Surface.part(this), options));
     }
-    hulls(options = {}) {
-      return checked(module.hulls(Surface.part(this), options));
+    hull(options = {}) {
+      return checked(module.hull(Surface.part(this), options));
     }
     closestPoint(point, options = {}) {
       return checked(module.closest(Surface.part(this), point, options));

@@ -7,7 +7,7 @@ const parts = new Map();
 
 const shapeOf = (surface, { level, adaptive, tolerance }) => {
   if (!adaptive) return surface.samples(level);
-  const { positions, normals, triangles, errorBound } = surface.tessellate({ tolerance });
+  const { positions, normals, triangles, errorBound } = surface.tessellate({ error: tolerance });
   return { positions: Float32Array.from(positions), normals: Float32Array.from(normals), triangles, errorBound };
 };
 
@@ -71,7 +71,7 @@ const operations = {
   ask({ a, b, poseA, poseB, tolerance, solid }) {
     const start = performance.now();
     const collision = snug.collide(parts.get(a), parts.get(b), { poseA, poseB, tolerance, solid });
-    const distance = snug.distance(parts.get(a), parts.get(b), { poseA, poseB, precision: tolerance, solid });
+    const distance = snug.distance(parts.get(a), parts.get(b), { poseA, poseB, absolute: tolerance, solid });
     const milliseconds = performance.now() - start;
     return {
       collision,
@@ -83,7 +83,7 @@ const operations = {
   shape: ({ part, ...how }) => shapeOf(parts.get(part), how),
   enclosures: ({ part, level }) => parts.get(part).enclosureShapes({ level }),
   hulls({ part, tolerance }) {
-    const hulls = parts.get(part).hulls({ tolerance });
+    const hulls = parts.get(part).hull({ error: tolerance });
     const drawn = (hull) =>
       hull && { positions: Float32Array.from(hull.positions), triangles: hull.triangles, gap: hull.gap };
     return { ...hulls, inner: drawn(hulls.inner), outer: drawn(hulls.outer) };

@@ -122,8 +122,8 @@ function sentence({ collision, question, texts }) {
   if (collision.verdict === "separated") return "Proved: the limit surfaces do not touch.";
   if (collision.verdict === "within") return `Proved: two points, one on each surface, are at most ${upper} apart.`;
   if (collision.verdict === "intersecting") {
-    return collision.inner === null ? `Proved: the ${question.solid ? "solids" : "limit surfaces"} have a point in common.`
-      : `Proved: a point of ${"AB"[collision.inner]} lies inside the solid ${"BA"[collision.inner]}.`;
+    return collision.contained === null ? `Proved: the ${question.solid ? "solids" : "limit surfaces"} have a point in common.`
+      : `Proved: a point of ${"AB"[collision.contained]} lies inside the solid ${"BA"[collision.contained]}.`;
   }
   return `The distance lies in [${lower}, ${upper ?? "?"}]; try a larger tolerance.`;
 }
@@ -188,7 +188,7 @@ function commands({ question, percent }) {
   if ($("sharp").checked) options.push("--sharp", String(angle()));
   if (question.solid) options.push("--solid");
   const line = (command, how) => ["snug", command, fileWord(a), fileWord(b), ...options, how, `${percent}%`].map(quoted).join(" ");
-  return [line("collide", "--tolerance"), line("distance", "--precision")];
+  return [line("collide", "--tolerance"), line("distance", "--absolute")];
 }
 
 function showCommands(answer) {
@@ -205,7 +205,7 @@ function compareWithFile(answer) {
   const here = same_place(poseA, file.place_a) && same_place(poseB, file.place_b);
   const found = file.command === "distance" ? answer.distance : answer.collision;
   const upper = found.distance[1] === Infinity ? null : found.distance[1];
-  const asked = file.tolerance ?? file.precision;
+  const asked = file.tolerance ?? file.absolute;
   const comparable = here && (asked === undefined || asked === answer.question.tolerance);
   const same = found.distance[0] === file.distance[0] && upper === file.distance[1] && (file.verdict ?? found.verdict) === found.verdict;
   const says = `${file.verdict ? `${file.verdict}, ` : ""}distance ${file.distance[0]} to ${file.distance[1] ?? "?"}`;
@@ -466,7 +466,7 @@ async function layers() {
         const hulls = await ask("hulls", { tolerance: Math.max(0.005, Number(percent()) / 100) * part.size });
         seen.hulls(hulls);
         const gaps = [hulls.inner, hulls.outer].filter(Boolean).map((hull) => hull.gap.toPrecision(3));
-        told_here.push(`hulls ${hulls.verified ? "proved" : "not proved"}, gaps ${gaps.join(" and ")}`);
+        told_here.push(`hulls ${hulls.outcome === "complete" ? "proved" : "not proved"}, gaps ${gaps.join(" and ")}`);
       } else {
         seen.hulls(null);
       }
@@ -733,7 +733,7 @@ async function openData(data) {
     pose: part.place ?? places[i] ?? identity.slice(),
   }));
   await open(parts, [0.55, 0.35, 0.85]);
-  const asked = state.file?.tolerance ?? state.file?.precision;
+  const asked = state.file?.tolerance ?? state.file?.absolute;
   const same = tolerances.findIndex((text) => (Number(text) / 100) * largest() === asked);
   if (same >= 0 && same !== Number($("tolerance").value)) {
     $("tolerance").value = same;

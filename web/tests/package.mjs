@@ -36,8 +36,8 @@ test("says that the pin is clear of the bracket, and by how much", () => {
   const [bracket, pin] = [model("bracket.obj"), model("pin.obj")];
   const poseB = snug.pose({ axis: [0, 0, 1], degrees: 135, move: [0.05, 0.05, 0.5] });
   assert.equal(snug.collide(bracket, pin, { poseB }).verdict, "separated");
-  const { distance, reached } = snug.distance(bracket, pin, { poseB, relative: 1e-3 });
-  assert.ok(reached);
+  const { distance, outcome } = snug.distance(bracket, pin, { poseB, relative: 1e-3 });
+  assert.equal(outcome, "complete");
   assert.ok(0.205 < distance[0] && distance[1] < 0.2054 && distance[1] - distance[0] <= 1e-3 * distance[1], `${distance}`);
   assert.equal(snug.textAtMost(1 / 3), "0.333333");
   assert.equal(snug.textAtLeast(2 / 3), "0.666667");
@@ -57,8 +57,8 @@ function poses(size, count) {
 
 const places = (list) => list && list.map((at) => at && [at.face ?? at.vertex ?? at.owner, at.corner ?? 0, at.u, at.v, at.normal, at.normal_error ?? at.normalError ?? null]);
 const finite = (distance) => distance.map((x) => (x === Infinity ? null : x));
-const native_bits = (r) => [r.verdict ?? r.reached, r.distance, r.witness, r.witness_error, places(r.witness_at), Object.values(r.stats)];
-const own_bits = (r) => [r.verdict ?? r.reached, finite(r.distance), r.witness, r.witnessError, places(r.witnessAt), Object.values(r.stats)];
+const native_bits = (r) => [r.verdict ?? r.outcome, r.distance, r.witness, r.witness_error, places(r.witness_at), Object.values(r.stats)];
+const own_bits = (r) => [r.verdict ?? r.outcome, finite(r.distance), r.witness, r.witnessError, places(r.witnessAt), Object.values(r.stats)];
 
 test("gives the bits of the native library to 1120 questions", () => {
   const pairs = [["bracket.obj", "pin.obj"], ["pawn.obj", "bust.obj"], ["star.obj", "ring.obj"], ["ring.obj", "ring.obj"], ["bracket.obj", "bracket.obj"],
@@ -75,7 +75,7 @@ test("gives the bits of the native library to 1120 questions", () => {
       assert.equal(document.results.length, list.length);
       document.results.forEach((native, i) => {
         const own = question === "collide" ? snug.collide(a, b, { poseB: list[i], tolerance: document.tolerance })
-          : snug.distance(a, b, { poseB: list[i], precision: document.precision });
+          : snug.distance(a, b, { poseB: list[i], absolute: document.absolute });
         // Strict equality tells 0 from -0, and any two doubles.
         assert.deepStrictEqual(own_bits(own), native_bits(native), `${question} ${name_a} ${name_b} ${scheme ?? ""}, pose ${i}`);
         verdicts.add(own.verdict);
@@ -177,21 +177,21 @@ test("draws, bounds and measures", () => {
     const surface = model(name);
     const { positions } = surface.samples(1);
     for (let i = 0; i < positions.length; i += 30) {
-      const { distance } = surface.closestPoint([...positions.subarray(i, i + 3)], { precision: 1e-6 });
+      const { distance } = surface.closestPoint([...positions.subarray(i, i + 3)], { absolute: 1e-6 });
       assert.ok(distance[0] < 1e-6, `${name}: ${distance}`);
     }
   }
-  const triangles = pawn.tessellate({ tolerance: 0.01 * pawn.size });
-  assert.ok(triangles.reached && triangles.errorBound <= 0.01 * pawn.size);
+  const triangles = pawn.tessellate({ error: 0.01 * pawn.size });
+  assert.ok(triangles.outcome === "complete" && triangles.errorBound <= 0.01 * pawn.size);
   const shapes = pawn.enclosureShapes({ level: 1 });
   assert.equal(shapes.positions.length % 9, 0);
   assert.ok(shapes.count > 100);
   const ring = model("ring.obj");
   assert.equal(ring.scheme, "loop");
-  const hulls = ring.hulls({ tolerance: 0.03 * ring.size });
-  assert.ok(hulls.verified && hulls.outer.gap <= 0.03 * ring.size);
+  const hulls = ring.hull({ error: 0.03 * ring.size });
+  assert.ok(hulls.outcome === "complete" && hulls.outer.gap <= 0.03 * ring.size);
   const { area, volume } = ring.measure({ relative: 0.01 });
-  const native = ask("measure", join(models, "ring.obj"), "--precision", "0.01");
+  const native = ask("measure", join(models, "ring.obj"), "--relative", "0.01");
   assert.deepStrictEqual([area, volume], [native.area, native.volume]);
   assert.ok(ring.limitToFaces() > 0);
   const inside = snug.penetration(ring, ring, { poseB: snug.pose({ move: [0.05, 0, 0] }) });

@@ -71,7 +71,7 @@ async function holdAgainstCommand(page, folder = models) {
   });
   const open_ended = ([lower, upper]) => [lower, Number.isFinite(upper) ? upper : null];
   assert.equal(answer.question.tolerance, collide.tolerance);
-  assert.equal(answer.question.tolerance, distance.precision);
+  assert.equal(answer.question.tolerance, distance.absolute);
   assert.equal(answer.collision.verdict, collide.verdict);
   assert.deepStrictEqual(open_ended(answer.collision.distance), collide.distance);
   assert.deepStrictEqual(answer.distance.distance, distance.distance);

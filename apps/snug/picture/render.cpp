@@ -392,7 +392,7 @@ void Renderer::hit_surface(std::uint32_t index, Scratch& scratch) const {
       asked.push_back(sample);
     }
     scratch.quick_hits.resize(scratch.mesh_rays.size());
-    surface.surface->cast(scratch.mesh_rays, scratch.quick_hits, 1);
+    surface.surface->cast(scratch.mesh_rays, scratch.quick_hits, {.threads = 1});
     samples.clear();
     for (std::size_t i = 0; i < asked.size(); ++i) {
       const QuickHit& hit = scratch.quick_hits[i];

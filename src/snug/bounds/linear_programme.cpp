@@ -20,12 +20,12 @@ struct Slopes {
   double x, y;
 };
 
-struct Place {
+struct LinePoint {
   double x, y, z;  // relative to the centre
 };
 
 // Every order with equal probability, from a fixed seed.
-void shuffle(std::vector<Place>& points) {
+void shuffle(std::vector<LinePoint>& points) {
   std::uint64_t state = 0x9e3779b97f4a7c15u;
   for (std::size_t i = points.size(); i > 1; --i) {
     state ^= state << 13, state ^= state >> 7, state ^= state << 17;
@@ -70,7 +70,7 @@ class Line {
 
 // Least at the centre of the planes through `tight` above the first `count` points: maximises
 // x tight.x + y tight.y.
-Slopes best_through(const Place& tight, const std::vector<Place>& points, std::size_t count) {
+Slopes best_through(const LinePoint& tight, const std::vector<LinePoint>& points, std::size_t count) {
   Slopes slopes{std::copysign(steepest, tight.x), std::copysign(steepest, tight.y)};
   for (std::size_t i = 0; i < count; ++i) {
     const double p = tight.x - points[i].x, q = tight.y - points[i].y;  // p x + q y <= most
@@ -92,13 +92,13 @@ Slopes best_through(const Place& tight, const std::vector<Place>& points, std::s
 Plane lowest_plane_above(std::span<const double> x, std::span<const double> y, std::span<const double> z,
                          double centre_x, double centre_y) {
   SNUG_EXPECT(!x.empty() && x.size() == y.size() && x.size() == z.size());
-  std::vector<Place> points(x.size());
+  std::vector<LinePoint> points(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i] - centre_x, y[i] - centre_y, z[i]};
   shuffle(points);
   Slopes slopes{0, 0};
   double at_centre = -INFINITY;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Place& p = points[i];
+    const LinePoint& p = points[i];
     if (p.z <= at_centre + slopes.x * p.x + slopes.y * p.y + negligible) continue;
     slopes = best_through(p, points, i);
     at_centre = p.z - slopes.x * p.x - slopes.y * p.y;

@@ -6,15 +6,15 @@
 #include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 
-RayCaster::RayCaster(const Surface& surface, double tolerance, int threads, const WorkMonitor& monitor)
-    : surface_(surface) {
-  require_value(std::isfinite(tolerance) && tolerance > 0,
-                "RayCaster: the tolerance must be positive; give the size of a pixel, for example");
+RayCaster::RayCaster(const Surface& surface, double error, const Run& run) : surface_(surface) {
+  require_value(std::isfinite(error) && error > 0,
+                "RayCaster: the error must be positive; give the size of a pixel, for example");
   const LimitSurface& limit = surface.data()->limit();
-  tree_ = std::make_shared<CasterTree>(limit, limit.scale().apply(tolerance), threads, monitor);
+  tree_ = std::make_shared<CasterTree>(limit, limit.scale().apply(error), run.threads, monitor_of(run));
 }
 
 QuickHit RayCaster::cast(const Ray& ray) const {
@@ -22,7 +22,7 @@ QuickHit RayCaster::cast(const Ray& ray) const {
   return tree_->cast(ray);
 }
 
-void RayCaster::cast(std::span<const Ray> rays, std::span<QuickHit> out, int threads) const {
+void RayCaster::cast(std::span<const Ray> rays, std::span<QuickHit> out, const Run& run) const {
   require_value(out.size() == rays.size(), "RayCaster: one hit for each ray");
   // A block is searched in groups that begin with its first ray: hits do not depend on threads.
   constexpr std::size_t block = 256;
@@ -32,7 +32,7 @@ void RayCaster::cast(std::span<const Ray> rays, std::span<QuickHit> out, int thr
     tree_->cast(rays.subspan(first, count), out.subspan(first, count));
   };
   if (rays.size() <= block) return cast_blocks(0, 1);
-  parallel_for((rays.size() + block - 1) / block, threads, cast_blocks);
+  parallel_for((rays.size() + block - 1) / block, run.threads, cast_blocks);
 }
 
 std::size_t RayCaster::bytes() const { return tree_->bytes(); }

@@ -224,7 +224,7 @@ Motion Motion::with_offset(const Vector3& offset) const {
   return {numbers, defect_};
 }
 
-Motion Motion::settled(const Numbers& numbers) {
+Motion Motion::made_rigid(const Numbers& numbers) {
   if (!is_finite(Vector3{numbers[3], numbers[7], numbers[11]})) {
     refuse("the translation of a product or inverse does not fit a double; give smaller translations");
   }
@@ -236,16 +236,16 @@ Motion operator*(const Motion& a, const Motion& b) {
   const Columns columns = columns_of(b.numbers_);
   const Numbers rotation =
       with_columns({}, {a.rotate(columns[0]), a.rotate(columns[1]), a.rotate(columns[2])});
-  return Motion::settled(with_offset(rotation, a.rotate(b.offset()) + a.offset()));
+  return Motion::made_rigid(with_offset(rotation, a.rotate(b.offset()) + a.offset()));
 }
 
 Motion Motion::inverse() const {
   const Columns rows = newton_step(columns_of(numbers_), 1);
   const Vector3 t = offset();
   const Vector3 back{-dot(rows[0], t), -dot(rows[1], t), -dot(rows[2], t)};
-  return settled({rows[0].x, rows[0].y, rows[0].z, back.x,  //
-                  rows[1].x, rows[1].y, rows[1].z, back.y,  //
-                  rows[2].x, rows[2].y, rows[2].z, back.z});
+  return made_rigid({rows[0].x, rows[0].y, rows[0].z, back.x,  //
+                     rows[1].x, rows[1].y, rows[1].z, back.y,  //
+                     rows[2].x, rows[2].y, rows[2].z, back.z});
 }
 
 NearestRigid nearest_rigid(const Numbers& matrix) {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <snug/geometry.h>
 #include <snug/geometry/rounding.h>
-#include <snug/motion.h>
 #include <support/point.h>
 
 namespace snug {

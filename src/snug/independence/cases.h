@@ -9,7 +9,7 @@
 #include <gmpxx.h>
 
 #include <snug/independence/piece_step.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 namespace snug {
 

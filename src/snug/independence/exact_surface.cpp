@@ -4,9 +4,9 @@
 #include <string>
 #include <unordered_map>
 
-#include <snug/error.h>
 #include <snug/independence/exact_step.h>
 #include <snug/patch/neighbourhood.h>
+#include <snug/run.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <snug/independence/weight.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/scheme/creases.h>
 
 namespace snug {

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/error.h>
 #include <snug/mesh/control_mesh.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/scheme/scheme.h>
 
 namespace snug {

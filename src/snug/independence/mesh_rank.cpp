@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include <snug/error.h>
 #include <snug/independence/exact_step.h>
 #include <snug/independence/exact_surface.h>
 #include <snug/independence/flint_memory.h>
 #include <snug/independence/surface_rank.h>
 #include <snug/independence/zero_proof.h>
+#include <snug/run.h>
 #include <snug/scheme/rules.h>
 #include <support/contract.h>
 

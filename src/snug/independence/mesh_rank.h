@@ -8,7 +8,7 @@
 #include <gmpxx.h>
 
 #include <snug/mesh/control_mesh.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/scheme/scheme.h>
 
 namespace snug {

@@ -6,7 +6,7 @@
 
 #include <snug/independence/exact_surface.h>
 #include <snug/independence/modular.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 
 namespace snug {
 

@@ -11,6 +11,7 @@
 #include <support/error.h>
 #include <support/number.h>
 #include <support/read_file.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
@@ -136,9 +137,9 @@ ControlMesh parse_mesh(std::string_view bytes, const std::string& path, const Re
   return mesh;
 }
 
-ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
+ControlMesh read_mesh(const std::string& path, const ReadOptions& options, const Run& run) {
   static_cast<void>(format_to_read(path));  // before the file is opened
-  return parse_mesh(read_file(path, options.monitor), path, options);
+  return parse_mesh(read_file(path, monitor_of(run)), path, options);
 }
 
 MeshFormat format_of(const std::string& path) {
@@ -148,7 +149,8 @@ MeshFormat format_of(const std::string& path) {
       .polygons = !triangles, .floats = triangles, .normals = ending == ".glb", .scheme = ending == ".usda"};
 }
 
-std::string format_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options) {
+std::string format_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options,
+                        const Run& run) {
   const std::string ending = format_to_write(path);
   require_value(options.normals.empty() || options.normals.size() == mesh.vertex_count(),
                 "write_mesh: give a normal for each vertex, or none");
@@ -157,14 +159,15 @@ std::string format_mesh(const ControlMesh& mesh, const std::string& path, const 
   if (notes && ending != ".obj" && mesh.polyline_count() > 0) {
     notes(path + ": this format has no polylines: they are dropped");
   }
-  options.monitor.checkpoint();
+  monitor_of(run).checkpoint();
   return formatted(mesh, ending, path, notes, options.normals);
 }
 
-void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options) {
+void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options,
+                const Run& run) {
   static_cast<void>(format_to_write(path));
   AtomicFile file(path);
-  file.write(format_mesh(mesh, path, options), options.monitor);
+  file.write(format_mesh(mesh, path, options, run), monitor_of(run));
   file.commit();
 }
 

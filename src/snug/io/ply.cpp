@@ -220,7 +220,7 @@ class HeaderParser {
 };
 
 /// The element that is being read.
-struct Place {
+struct ElementPlace {
   const Element* element = nullptr;
   std::size_t number = 0;
 
@@ -240,7 +240,7 @@ class AsciiBody {
     return (std::uint64_t{cursor_.bytes_left()} + 1) / (2 * element.properties.size());  // digit and blank
   }
   /// The next values belong to this element.
-  void begin(const Place& place) {
+  void begin(const ElementPlace& place) {
     place_ = place;
     while (!cursor_.more_in_line()) {
       if (!cursor_.next_line()) {
@@ -284,7 +284,7 @@ class AsciiBody {
   }
 
   TextCursor cursor_;
-  Place place_;
+  ElementPlace place_;
 };
 
 /// The same of a binary file.
@@ -302,7 +302,7 @@ class BinaryBody {
     }
     return rest_.size() / least;
   }
-  void begin(const Place& place) { place_ = place; }
+  void begin(const ElementPlace& place) { place_ = place; }
   double coordinate(const Scalar& type) {
     double value = 0;
     if (type.is_integer()) {
@@ -349,7 +349,7 @@ class BinaryBody {
   std::string_view rest_;
   const std::string& name_;
   std::endian order_;
-  Place place_;
+  ElementPlace place_;
 };
 
 /// Reads the elements that a header declares.

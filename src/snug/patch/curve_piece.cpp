@@ -52,13 +52,13 @@ CurveBezier bezier_points(const CurvePiece& piece) {
   return bezier;
 }
 
-std::array<LimitPoint, 2> limit_ends(const CurvePiece& piece) {
+std::array<RelativePoint, 2> limit_ends(const CurvePiece& piece) {
   if (piece.window == CurveWindow::quadratic_edge) {
     return {limit_ends(split(piece, 0))[0], limit_ends(split(piece, 1))[1]};
   }
   const CurveBezier bezier = bezier_points(piece);
-  return {LimitPoint{bezier.points[0], bezier.error},
-          LimitPoint{bezier.points[bezier.count - 1], bezier.error}};
+  return {RelativePoint{bezier.points[0], bezier.error},
+          RelativePoint{bezier.points[bezier.count - 1], bezier.error}};
 }
 
 CurvePoint curve_point(const CurvePiece& piece, double t) {

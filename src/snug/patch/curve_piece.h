@@ -46,11 +46,11 @@ struct CurveBezier {
 [[nodiscard]] CurveBezier bezier_points(const CurvePiece& piece);
 
 /// Limit points at both ends of a piece.
-[[nodiscard]] std::array<LimitPoint, 2> limit_ends(const CurvePiece& piece);
+[[nodiscard]] std::array<RelativePoint, 2> limit_ends(const CurvePiece& piece);
 
 /// A limit point and the derivative there along the piece's parameter.
 struct CurvePoint {
-  LimitPoint point;
+  RelativePoint point;
   Vector3 tangent;  ///< in double precision without a bound; may be 0
 };
 /// Guarantee: |relative - exact| <= error a coordinate, for exactly this parameter.

@@ -54,10 +54,10 @@ inline TriangleParameter checked(TriangleParameter at) {
 
 // Answer of a piece at the depth limit for all its parameters: a corner, with the size of its control net as the
 // error, which bounds the distance of any two of its limit points.
-inline LimitPoint stopped_point(const Patch& piece) {
+inline RelativePoint stopped_point(const Patch& piece) {
   Box3 box;
   for (const Vector3& p : piece.points) box.add(Point3{} + p);
-  LimitPoint corner = corner_point(piece, 0);
+  RelativePoint corner = corner_point(piece, 0);
   corner.error += enlarged(longest_side(box)) + 2 * piece.error;
   return corner;
 }

@@ -58,7 +58,7 @@ void put_on_lattice(const Patch& piece, const PieceParameter& p, OnLattice& out)
   out.at[0] = {w, half ? u + v : u, v, 0, in_order.data()};
 }
 
-LimitPoint polynomial_point(const Patch& piece, const PieceParameter& p) {
+RelativePoint polynomial_point(const Patch& piece, const PieceParameter& p) {
   OnLattice here;
   put_on_lattice(piece, p, here);
   kernels::NetPoint sum;
@@ -68,7 +68,7 @@ LimitPoint polynomial_point(const Patch& piece, const PieceParameter& p) {
 
 // The point, and derivatives along the kind's u and v with the error of each coordinate.
 struct Derivatives {
-  LimitPoint point;
+  RelativePoint point;
   std::array<Vector3, 2> along;
   double error;
 };
@@ -146,7 +146,7 @@ void add_normal(LimitFrame& frame) {
   if (size > 4 * error) frame.normal_error = enlarged(2 * error * by_size + 16 * unit_roundoff);
 }
 
-LimitPoint corner_point(const Patch& patch, std::size_t corner) {
+RelativePoint corner_point(const Patch& patch, std::size_t corner) {
   const Stencils& limits = patch.kind->corner_limits();
   return {limits.apply<Vector3>(patch.to_kind(corner), patch.points),
           limits.result_error(patch.largest, patch.error)};
@@ -159,7 +159,7 @@ std::array<Vector3, 3> limit_corners(const Patch& patch) {
   return corners;
 }
 
-LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
+RelativePoint limit_point(const Patch& patch, TriangleParameter parameter) {
   const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch, corner);
   const Located here = locate(patch, at);

@@ -9,7 +9,7 @@
 namespace snug {
 
 /// A point of the limit surface, or of a limit curve.
-struct LimitPoint {
+struct RelativePoint {
   Vector3 relative;  ///< to the patch's origin
   double error;      ///< upper bound, a coordinate, of |relative - exact|
 
@@ -22,7 +22,7 @@ struct LimitPoint {
 
 /// A limit point with what the surface does there.
 struct LimitFrame {
-  LimitPoint point;
+  RelativePoint point;
   /// Derivatives along u and v where they exist; elsewhere two limit tangents, counter-clockwise, of any
   /// length.
   std::array<Vector3, 2> tangents;
@@ -39,7 +39,7 @@ struct LimitFrame {
 /// Errors:    InputError (value) unless u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1
 ///            all the same, the smaller of the two is lowered to the far edge: that point is meant.
 /// Cost:      regular: 45 ns; near an extraordinary corner a split a level, at most 60.
-[[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
+[[nodiscard]] RelativePoint limit_point(const Patch& patch, TriangleParameter at);
 
 /// The same with tangents and normal.
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, TriangleParameter at);
@@ -48,7 +48,7 @@ struct LimitFrame {
 void add_normal(LimitFrame& frame);
 
 /// Limit position of corner 0, 1 or 2 of the patch: one row.
-[[nodiscard]] LimitPoint corner_point(const Patch& patch, std::size_t corner);
+[[nodiscard]] RelativePoint corner_point(const Patch& patch, std::size_t corner);
 /// Limit positions of all three.
 [[nodiscard]] std::array<Vector3, 3> limit_corners(const Patch& patch);
 

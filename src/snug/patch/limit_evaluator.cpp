@@ -38,7 +38,7 @@ std::size_t quad_corner(double u, double v) {
 
 }  // namespace
 
-struct LimitEvaluator::Place {
+struct LimitEvaluator::Position {
   double u, v;                     // on `piece`, or on its regular child
   std::uint32_t piece = 0;         // the last one that is kept
   std::uint8_t first = 0;          // corner of the piece, or of its regular child, that its kind calls 0
@@ -112,7 +112,7 @@ std::uint32_t LimitEvaluator::make_child(std::uint32_t piece, unsigned child) {
 }
 
 // Whether the parameter is an extraordinary corner of the piece, for all practical ends.
-bool LimitEvaluator::stop_at_corner(Place& place) const {
+bool LimitEvaluator::stop_at_corner(Position& place) const {
   const Piece& piece = pieces_[place.piece];
   std::size_t corner = triangular_ ? triangle_corner(place.u, place.v) : quad_corner(place.u, place.v);
   const bool stop = piece.level >= PiecePath::max_level;
@@ -130,7 +130,7 @@ bool LimitEvaluator::stop_at_corner(Place& place) const {
 }
 
 // One step down, to a regular piece or to one that is kept.
-void LimitEvaluator::descend(Place& place) {
+void LimitEvaluator::descend(Position& place) {
   if (pieces_[place.piece].step == nullptr) refine(pieces_[place.piece]);
   unsigned child = 0;
   if (triangular_) {
@@ -158,7 +158,7 @@ void LimitEvaluator::descend(Place& place) {
   }
 }
 
-void LimitEvaluator::locate(Place& place) {
+void LimitEvaluator::locate(Position& place) {
   SNUG_EXPECT(!pieces_.empty());
   if (triangular_) {
     const TriangleParameter at = checked({place.u, place.v});
@@ -173,13 +173,13 @@ void LimitEvaluator::locate(Place& place) {
   while (place.lattice == nullptr && !stop_at_corner(place)) descend(place);
 }
 
-LimitPoint LimitEvaluator::corner_point(const Place& place) const {
+RelativePoint LimitEvaluator::corner_point(const Position& place) const {
   const Piece& piece = pieces_[place.piece];
   const Net& net = piece.control;
   const NetPoint* const points = points_.data() + net.first;
   const Stencils& limits = place.corner < 3 ? piece.kind->corner_limits() : piece.kind->far_corner().limit;
-  LimitPoint point{applied(limits.row(place.corner % 3), points),
-                   limits.result_error(net.largest, net.error)};
+  RelativePoint point{applied(limits.row(place.corner % 3), points),
+                      limits.result_error(net.largest, net.error)};
   if (place.stopped) {
     Box3 box;
     for (std::size_t i = 0; i < piece.kind->control_count(); ++i) box.add(Point3{} + spatial(points[i]));
@@ -188,7 +188,7 @@ LimitPoint LimitEvaluator::corner_point(const Place& place) const {
   return point;
 }
 
-LimitFrame LimitEvaluator::corner_frame(const Place& place) const {
+LimitFrame LimitEvaluator::corner_frame(const Position& place) const {
   const Piece& piece = pieces_[place.piece];
   LimitFrame frame;
   frame.point = corner_point(place);
@@ -202,13 +202,13 @@ LimitFrame LimitEvaluator::corner_frame(const Place& place) const {
   return frame;
 }
 
-double LimitEvaluator::regular_error(const Place& place) const {
+double LimitEvaluator::regular_error(const Position& place) const {
   const Piece& piece = pieces_[place.piece];
   if (place.drift == 0) return piece.value_error;
   return BasisBounds::value_error(piece.refined.largest, piece.refined.error, 4 * place.drift);
 }
 
-void LimitEvaluator::put_on_lattice(const Place& place, kernels::LatticePlace& out) const {
+void LimitEvaluator::put_on_lattice(const Position& place, kernels::LatticePlace& out) const {
   const double u = place.u, v = place.v, w = 1 - u - v;
   // In the kind's order of corners.
   out.w = place.first == 0 ? w : place.first == 1 ? u : v;
@@ -218,7 +218,7 @@ void LimitEvaluator::put_on_lattice(const Place& place, kernels::LatticePlace& o
   out.lattice = place.lattice;
 }
 
-void LimitEvaluator::points(std::span<const SurfaceParameter> at, std::span<BoundedPoint> out) {
+void LimitEvaluator::points(std::span<const Place> at, std::span<BoundedPoint> out) {
   SNUG_EXPECT(at.size() == out.size());
   constexpr std::size_t most = 64;
   std::array<kernels::LatticePlace, most> found;
@@ -227,7 +227,7 @@ void LimitEvaluator::points(std::span<const SurfaceParameter> at, std::span<Boun
   for (std::size_t begin = 0; begin < at.size(); begin += most) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < std::min(at.size(), begin + most); ++i) {
-      Place place{at[i].u, at[i].v};
+      Position place{at[i].u, at[i].v};
       locate(place);
       if (place.lattice == nullptr) {
         out[i] = corner_point(place).from(origin_);
@@ -240,12 +240,12 @@ void LimitEvaluator::points(std::span<const SurfaceParameter> at, std::span<Boun
     kernels::sum_values(basis_, points_.data(), {found.data(), count}, sums.data());
     for (std::size_t k = 0; k < count; ++k) {
       BoundedPoint& point = out[which[k]];
-      point = LimitPoint{spatial(sums[k]), point.error}.from(origin_);
+      point = RelativePoint{spatial(sums[k]), point.error}.from(origin_);
     }
   }
 }
 
-LimitFrame LimitEvaluator::regular_frame(const Place& place) const {
+LimitFrame LimitEvaluator::regular_frame(const Position& place) const {
   const Net& net = pieces_[place.piece].refined;
   std::array<kernels::LatticePlace, 1> at;
   put_on_lattice(place, at[0]);
@@ -269,8 +269,8 @@ LimitFrame LimitEvaluator::regular_frame(const Place& place) const {
   return frame;
 }
 
-LimitFrame LimitEvaluator::frame(const SurfaceParameter& at) {
-  Place place{at.u, at.v};
+LimitFrame LimitEvaluator::frame(const Place& at) {
+  Position place{at.u, at.v};
   locate(place);
   return place.lattice != nullptr ? regular_frame(place) : corner_frame(place);
 }

@@ -32,9 +32,9 @@ class LimitEvaluator {
 
   // Requires, of the next two: a patch. Owners and corners of parameters do not matter.
   /// Requires:  out.size() == at.size().
-  void points(std::span<const SurfaceParameter> at, std::span<BoundedPoint> out);
+  void points(std::span<const Place> at, std::span<BoundedPoint> out);
   /// Its point is relative to origin().
-  [[nodiscard]] LimitFrame frame(const SurfaceParameter& at);
+  [[nodiscard]] LimitFrame frame(const Place& at);
   [[nodiscard]] const Point3& origin() const { return origin_; }
 
   [[nodiscard]] std::size_t bytes() const;
@@ -58,21 +58,21 @@ class LimitEvaluator {
     std::array<std::uint32_t, 4> children{};
   };
   // Where a parameter lies: in a regular piece, or at a corner of one that is not.
-  struct Place;
+  struct Position;
 
-  void locate(Place& place);
-  [[nodiscard]] bool stop_at_corner(Place& place) const;
-  void descend(Place& place);
+  void locate(Position& place);
+  [[nodiscard]] bool stop_at_corner(Position& place) const;
+  void descend(Position& place);
   void refine(Piece& piece);
   [[nodiscard]] std::uint32_t make_child(std::uint32_t piece, unsigned child);
   Net add_rows(const Stencils& stencils, const Net& from);
   void add_ghosts(const Stencils& ghosts, const Net& from, Net& to);
-  [[nodiscard]] LimitPoint corner_point(const Place& place) const;
-  [[nodiscard]] LimitFrame corner_frame(const Place& place) const;
-  [[nodiscard]] double regular_error(const Place& place) const;
-  [[nodiscard]] LimitFrame regular_frame(const Place& place) const;
+  [[nodiscard]] RelativePoint corner_point(const Position& place) const;
+  [[nodiscard]] LimitFrame corner_frame(const Position& place) const;
+  [[nodiscard]] double regular_error(const Position& place) const;
+  [[nodiscard]] LimitFrame regular_frame(const Position& place) const;
 
-  void put_on_lattice(const Place& place, kernels::LatticePlace& out) const;
+  void put_on_lattice(const Position& place, kernels::LatticePlace& out) const;
 
   Point3 origin_;
   bool triangular_ = false;

@@ -11,9 +11,12 @@
 #include <snug/shape/normal_cone.h>
 #include <snug/surface/unscale.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 1'000'000;
 
 // Returns whether rounding alone makes up the radius: then splitting does not help.
 template <std::size_t N>
@@ -73,7 +76,7 @@ class CurvePieces {
 
   bool enclose(std::size_t i, const CurvePiece& piece, CurveEnclosure& out) {
     out.edge = EdgeId(i);
-    const std::array<LimitPoint, 2> limits = limit_ends(piece);
+    const std::array<RelativePoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
     bounding_points(piece, points_);
     return snug::enclose(ends, piece.origin, offset_segment(points_, ends), interval_simplex(points_, ends),
@@ -93,14 +96,14 @@ struct Bounded {
   std::vector<typename Pieces::Enclosure> enclosures;
   double max_radius = 0;
   std::uint64_t splits = 0;
-  bool reached = true;
+  Outcome outcome = Outcome::complete;
 };
 
 template <class Pieces>
 class Bounder {
  public:
-  Bounder(const Pieces& pieces, const BoundOptions& options, const WorkMonitor& monitor)
-      : pieces_(pieces), options_(options), monitor_(monitor) {}
+  Bounder(const Pieces& pieces, const BoundOptions& options, const Run& run)
+      : pieces_(pieces), options_(options), monitor_(monitor_of(run)) {}
 
   Bounded<Pieces> run(std::size_t i, std::uint64_t budget) {
     result_ = {};
@@ -120,9 +123,10 @@ class Bounder {
     const bool stuck = pieces_.enclose(whole_, piece, enclosure);
     const double radius = enclosure.offset.radius;
     const bool more =
-        options_.tolerance ? radius > *options_.tolerance / 2 : level_ + piece.path.level() < options_.level;
-    if (!more || !room || (options_.tolerance && stuck)) {
-      result_.reached = result_.reached && !more;
+        options_.error ? radius > *options_.error / 2 : level_ + piece.path.level() < options_.level;
+    if (!more || !room || (options_.error && stuck)) {
+      const bool spent = result_.splits >= budget_ && !(options_.error && stuck);
+      result_.outcome = worse(result_.outcome, outcome_of(!more, spent));
       result_.max_radius = std::max(result_.max_radius, radius);
       if (options_.normals) pieces_.add_normals(piece, enclosure);
       result_.enclosures.push_back(std::move(enclosure));
@@ -144,25 +148,25 @@ class Bounder {
 
 template <class Pieces>
 BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions& options,
-                       const std::function<void(const typename Pieces::Enclosure&)>& sink,
-                       const WorkMonitor& monitor) {
-  require_value(!options.tolerance || (*options.tolerance > 0 && std::isfinite(*options.tolerance)),
-                "bound: the tolerance must be finite and positive; leave it out to bound whole patches");
+                       const std::function<void(const typename Pieces::Enclosure&)>& sink, const Run& run) {
+  require_value(!options.error || (*options.error > 0 && std::isfinite(*options.error)),
+                "bound: the error must be finite and positive; leave it out to bound whole patches");
   require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
   // Patches or edges worked on at once: as many as their pieces are few, so that memory stays small and
   // threads are busy.
   constexpr std::size_t max_wholes = 1024, max_pieces = 1 << 16;
   std::size_t chunk = 1;
+  const std::uint64_t max_splits = run.max_splits.value_or(default_splits);
   BoundSummary summary;
   std::vector<Bounded<Pieces>> results;
   for (std::size_t begin = 0, count = 0; begin < all; begin += count) {
     count = std::min(chunk, all - begin);
     // One that needs more than its share of the memory is done again, alone.
-    const std::uint64_t left = std::min<std::uint64_t>(options.budget - summary.splits,
+    const std::uint64_t left = std::min<std::uint64_t>(max_splits - summary.splits,
                                                        std::max<std::uint64_t>(64, max_pieces / (3 * count)));
     results.assign(count, {});
     parallel_for_with(
-        count, options.threads, [&] { return Bounder<Pieces>(wholes, options, monitor); },
+        count, run.threads, [&] { return Bounder<Pieces>(wholes, options, run); },
         [&](Bounder<Pieces>& bounder, std::size_t from, std::size_t to) {
           for (std::size_t i = from; i < to; ++i) results[i] = bounder.run(begin + i, left);
         });
@@ -170,19 +174,19 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
     for (std::size_t i = 0; i < count; ++i) {
       // The budget is spent in order, whatever the threads did.
       Bounded<Pieces>& result = results[i];
-      const std::uint64_t rest = options.budget - summary.splits;
+      const std::uint64_t rest = max_splits - summary.splits;
       if (result.splits > rest || (result.splits == left && left < rest)) {
-        result = Bounder<Pieces>(wholes, options, monitor).run(begin + i, rest);
+        result = Bounder<Pieces>(wholes, options, run).run(begin + i, rest);
       }
       summary.splits += result.splits;
-      summary.reached = summary.reached && result.reached;
+      summary.outcome = worse(summary.outcome, result.outcome);
       summary.max_radius = std::max(summary.max_radius, result.max_radius);
       summary.count += result.enclosures.size();
       for (const auto& enclosure : result.enclosures) sink(enclosure);
       pieces += result.enclosures.size();
     }
     chunk = std::clamp<std::size_t>(max_pieces * count / (pieces + 1), 1, std::min(4 * count, max_wholes));
-    monitor.report(static_cast<double>(begin + count) / static_cast<double>(all));
+    monitor_of(run).report(static_cast<double>(begin + count) / static_cast<double>(all));
   }
   return summary;
 }
@@ -190,18 +194,18 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
 }  // namespace
 
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
-                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor,
+                   const std::function<void(const PieceEnclosure&)>& sink, const Run& run,
                    BoundMethod method) {
-  return bound_all(SurfacePieces(surface, method), surface.patch_count(), options, sink, monitor);
+  return bound_all(SurfacePieces(surface, method), surface.patch_count(), options, sink, run);
 }
 
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
-                   const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
-  return bound_all(CurvePieces(curves), curves.edge_count(), options, sink, monitor);
+                   const std::function<void(const CurveEnclosure&)>& sink, const Run& run) {
+  return bound_all(CurvePieces(curves), curves.edge_count(), options, sink, run);
 }
 
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
-                   const std::function<void(const PatchEnclosure&)>& sink, const WorkMonitor& monitor) {
+                   const std::function<void(const PatchEnclosure&)>& sink, const Run& run) {
   const LimitSurface& limit = surface.data()->limit();
   return bound(
       limit, options,
@@ -210,7 +214,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
               piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
               piece.offset, piece.interval, piece.normals});
       },
-      monitor, surface.data()->method());
+      run, surface.data()->method());
 }
 
 }  // namespace snug

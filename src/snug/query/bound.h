@@ -31,11 +31,11 @@ struct CurveEnclosure : Enclosure<2> {
 
 /// bound() of bound.h, patches by their names in LimitSurface.
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
-                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {},
+                   const std::function<void(const PieceEnclosure&)>& sink, const Run& run = {},
                    BoundMethod method = BoundMethod::rows);
 /// The same of all limit curves, edge by edge, pieces of one from its first end to its last.
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
-                   const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor = {});
+                   const std::function<void(const CurveEnclosure&)>& sink, const Run& run = {});
 
 /// limit_to_faces() of evaluate.h.
 [[nodiscard]] std::optional<double> limit_to_faces(const LimitSurface& surface, int threads = 0);

@@ -15,9 +15,12 @@
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/error.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 1'000'000;
 
 // Bounds of gaps err by some hundred roundings of coordinates.
 constexpr double noise = 0x1p-45;
@@ -44,14 +47,14 @@ struct QueryPoint {
 
 class ClosestSearch {
  public:
-  ClosestSearch(SurfaceWorkspace& workspace, const QueryPoint& to, const ClosestOptions& options,
-                const WorkMonitor& monitor)
+  ClosestSearch(SurfaceWorkspace& workspace, const QueryPoint& to, const Precision& options, const Run& run)
       : workspace_(workspace),
         surface_(workspace.model().surface()),
         to_(to.at),
         point_error_(to.error),
         options_(options),
-        monitor_(monitor),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)),
         bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
                 *options.relative, noise * (2 + max_abs(to_ - Point3{}))) {}
 
@@ -87,7 +90,10 @@ class ClosestSearch {
         return true;
       }
     }
-    if (splits_ >= options_.budget || workspace_.full()) return false;
+    if (splits_ >= max_splits_ || workspace_.full()) {
+      budget_spent_ = splits_ >= max_splits_;
+      return false;
+    }
     splits_ += node.bounded();
     const SurfaceWorkspace::Opened opened = workspace_.open(node);
     WideNode::Distances gaps;
@@ -144,120 +150,121 @@ class ClosestSearch {
     const Interval distance{unscaled_down(std::max(0.0, bounds_.lower()), back),
                             require_representable(unscaled_up(bounds_.upper(), back))};
     const BoundedPoint closest = unscaled(closest_, back);
-    return {distance, near_enough(distance, options_), closest.position, closest.error, at_};
+    return {{closest.position, closest.error, at_},
+            distance,
+            outcome_of(near_enough(distance, options_), budget_spent_)};
   }
 
   SurfaceWorkspace& workspace_;
   const LimitSurface& surface_;
   Point3 to_;
   double point_error_;
-  const ClosestOptions& options_;
+  const Precision& options_;
   const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   DistanceBounds bounds_;
   BoundedPoint closest_;
-  SurfaceParameter at_{};
+  Place at_{};
   std::uint64_t splits_ = 0;
+  bool budget_spent_ = false;
 };
 
 }  // namespace
 
-ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const ClosestOptions& options,
-                           const WorkMonitor& monitor) {
+ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const Precision& options,
+                           const Run& run) {
   const LimitSurface& surface = workspace.model().surface();
   const QueryPoint asked(surface, to, "closest");
-  const ClosestOptions wanted = with_precision(options, surface.size());
+  const Precision wanted = with_precision(options, surface.size());
   require_value(asked.tame,
                 "closest: a point is more than 10^12 sizes of the surface away; give closer points");
-  return ClosestSearch(workspace, asked, wanted, monitor).run();
+  return ClosestSearch(workspace, asked, wanted, run).run();
 }
 
-std::optional<bool> contains(SurfaceWorkspace& workspace, const Point3& point, const WorkMonitor& monitor) {
+std::optional<bool> contains(SurfaceWorkspace& workspace, const Point3& point, const Run& run) {
   const SurfaceBvh& model = workspace.model();
   const QueryPoint asked(model.surface(), point, "contains");
   static_cast<void>(model.solid());
   workspace.begin();
   if (!asked.tame) return false;
-  const std::optional<int> number = winding_number(workspace, asked.at, spatial_error(asked.error), monitor);
+  const std::optional<int> number =
+      winding_number(workspace, asked.at, spatial_error(asked.error), monitor_of(run));
   return number ? std::optional(*number != 0) : std::nullopt;
 }
 
-SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point,
-                               const ClosestOptions& options, const WorkMonitor& monitor) {
+SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point, const Precision& options,
+                               const Run& run) {
   const SurfaceBvh& model = workspace.model();
   static_cast<void>(model.solid());
   SignedDistance answer;
-  answer.nearest = closest_point(workspace, point, options, monitor);
+  answer.nearest = closest_point(workspace, point, options, run);
   const ClosestPoint& nearest = answer.nearest;
-  const std::optional<bool> inside = contains(workspace, point, monitor);
+  const std::optional<bool> inside = contains(workspace, point, run);
   answer.distance = {inside == false ? nearest.distance.lower : -nearest.distance.upper,
                      inside == true ? -nearest.distance.lower : nearest.distance.upper};
-  answer.reached =
-      nearest.reached &&
-      (inside.has_value() || near_enough(answer.distance, with_precision(options, model.surface().size())));
+  const bool narrow =
+      inside.has_value() || near_enough(answer.distance, with_precision(options, model.surface().size()));
+  answer.outcome = worse(nearest.outcome, outcome_of(narrow, false));
   return answer;
 }
 
-std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<const Point3> to,
-                                         const ClosestOptions& options, int threads,
-                                         const WorkMonitor& monitor) {
+std::vector<ClosestPoint> closest_point(const SurfaceBvh& model, std::span<const Point3> to,
+                                        const Precision& options, const Run& run) {
   std::vector<ClosestPoint> results(to.size());
-  for_each_point(model, to, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = closest_point(workspace, to[i], options, monitor);
+  for_each_point(model, to, run.threads, monitor_of(run), [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = closest_point(workspace, to[i], options, run);
   });
   return results;
 }
 
 std::vector<std::optional<bool>> contains(const SurfaceBvh& model, std::span<const Point3> points,
-                                          int threads, const WorkMonitor& monitor) {
+                                          const Run& run) {
   static_cast<void>(model.solid());
   std::vector<std::optional<bool>> results(points.size());
-  for_each_point(model, points, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = contains(workspace, points[i], monitor);
-  });
+  for_each_point(
+      model, points, run.threads, monitor_of(run),
+      [&](SurfaceWorkspace& workspace, std::size_t i) { results[i] = contains(workspace, points[i], run); });
   return results;
 }
 
-std::vector<SignedDistance> signed_distances(const SurfaceBvh& model, std::span<const Point3> points,
-                                             const ClosestOptions& options, int threads,
-                                             const WorkMonitor& monitor) {
+std::vector<SignedDistance> signed_distance(const SurfaceBvh& model, std::span<const Point3> points,
+                                            const Precision& options, const Run& run) {
   static_cast<void>(model.solid());
   std::vector<SignedDistance> results(points.size());
-  for_each_point(model, points, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = signed_distance(workspace, points[i], options, monitor);
-  });
+  for_each_point(model, points, run.threads, monitor_of(run),
+                 [&](SurfaceWorkspace& workspace, std::size_t i) {
+                   results[i] = signed_distance(workspace, points[i], options, run);
+                 });
   return results;
 }
 
-ClosestPoint closest_point(const Surface& surface, const Point3& to, const ClosestOptions& options,
-                           const WorkMonitor& monitor, Workspace& workspace) {
-  return closest_point(workspace.pieces().of(surface), to, options, monitor);
+ClosestPoint closest_point(const Surface& surface, const Point3& to, const Precision& options,
+                           const Run& run) {
+  return closest_point(workspace_of(run).pieces().of(surface), to, options, run);
 }
 
-std::vector<ClosestPoint> closest_points(const Surface& surface, std::span<const Point3> to,
-                                         const ClosestOptions& options, int threads,
-                                         const WorkMonitor& monitor) {
-  return closest_points(surface.data()->bvh(), to, options, threads, monitor);
+std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const Point3> to,
+                                        const Precision& options, const Run& run) {
+  return closest_point(surface.data()->bvh(), to, options, run);
 }
 
-std::optional<bool> contains(const Surface& surface, const Point3& point, const WorkMonitor& monitor,
-                             Workspace& workspace) {
-  return contains(workspace.pieces().of(surface), point, monitor);
+std::optional<bool> contains(const Surface& surface, const Point3& point, const Run& run) {
+  return contains(workspace_of(run).pieces().of(surface), point, run);
 }
 
-std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points, int threads,
-                                          const WorkMonitor& monitor) {
-  return contains(surface.data()->bvh(), points, threads, monitor);
+std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points,
+                                          const Run& run) {
+  return contains(surface.data()->bvh(), points, run);
 }
 
-SignedDistance signed_distance(const Surface& surface, const Point3& point, const ClosestOptions& options,
-                               const WorkMonitor& monitor, Workspace& workspace) {
-  return signed_distance(workspace.pieces().of(surface), point, options, monitor);
+SignedDistance signed_distance(const Surface& surface, const Point3& point, const Precision& options,
+                               const Run& run) {
+  return signed_distance(workspace_of(run).pieces().of(surface), point, options, run);
 }
 
-std::vector<SignedDistance> signed_distances(const Surface& surface, std::span<const Point3> points,
-                                             const ClosestOptions& options, int threads,
-                                             const WorkMonitor& monitor) {
-  return signed_distances(surface.data()->bvh(), points, options, threads, monitor);
+std::vector<SignedDistance> signed_distance(const Surface& surface, std::span<const Point3> points,
+                                            const Precision& options, const Run& run) {
+  return signed_distance(surface.data()->bvh(), points, options, run);
 }
 
 }  // namespace snug

@@ -12,10 +12,16 @@
 #include <snug/surface/unscale.h>
 #include <support/error.h>
 #include <support/names.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
 
+constexpr std::uint64_t default_splits = 1'000'000;
+
+constexpr auto outcome_names = std::to_array<Named<Outcome>>({{"complete", Outcome::complete},
+                                                              {"budget-spent", Outcome::budget_spent},
+                                                              {"at-rounding", Outcome::at_rounding}});
 constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verdict::separated},
                                                               {"within", Verdict::within},
                                                               {"intersecting", Verdict::intersecting},
@@ -31,9 +37,11 @@ constexpr int quadratic_steps = 2, limit_steps = 2;
 
 class CollideSearch {
  public:
-  CollideSearch(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
-                const WorkMonitor& monitor)
-      : frames_(a, b), options_(options), monitor_(monitor) {
+  CollideSearch(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run)
+      : frames_(a, b),
+        options_(options),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)) {
     margin_ = frames_.length_up(options.margin);
     reach_ = frames_.length_down((options.margin + *options.tolerance) * (1 - unit_roundoff));
   }
@@ -109,8 +117,9 @@ class CollideSearch {
       incomplete_ = true;
       return true;
     }
-    if (!walk_.may_open(pair, opening, options_.budget)) {
+    if (!walk_.may_open(pair, opening, max_splits_)) {
       incomplete_ = true;
+      budget_spent_ = stats_.splits >= max_splits_;
       return false;
     }
     lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, out)));
@@ -177,6 +186,7 @@ class CollideSearch {
                      : found_      ? Verdict::within
                      : incomplete_ ? Verdict::undecided
                                    : Verdict::separated;
+    answer.outcome = outcome_of(answer.verdict != Verdict::undecided, budget_spent_);
     const PowerOfTwo back = frames_.to_mesh_units();
     if (near_ && near_->near_distance < best_.distance) {
       const bool exact = options_.witness == WitnessKind::exact;
@@ -202,6 +212,7 @@ class CollideSearch {
   PiecePairs pieces_{frames_, stats_};
   const CollideOptions& options_;
   const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   double margin_ = 0, reach_ = 0;
   double lower_ = INFINITY;
   Witness best_;
@@ -209,47 +220,48 @@ class CollideSearch {
   int attempts_ = 0;
   bool proving_ = false;
   // `incomplete_`: pairs were not opened, for the budget or because they cannot be.
-  bool found_ = false, crossing_ = false, incomplete_ = false;
+  bool found_ = false, crossing_ = false, incomplete_ = false, budget_spent_ = false;
 };
 
 // Makes of an answer about two closed surfaces that for the solids that they bound. A point of one surface in
 // the other solid is a common point of both solids, whatever is known of the surfaces.
-void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor, Collision& answer) {
+void make_solid(const PlacedBvh& a, const PlacedBvh& b, const Run& run, Collision& answer) {
   const bool separated = answer.verdict == Verdict::separated;
-  const Nesting found = separated ? nesting(a, b, monitor) : common_point(a, b, monitor);
+  const Nesting found = separated ? nesting(a, b, monitor_of(run)) : common_point(a, b, monitor_of(run));
   if (found.inner) {
     found.write_to(answer);
     answer.verdict = Verdict::intersecting;
-  } else if (!separated && have_inner_point_in_common(a, b, monitor)) {
+    answer.outcome = Outcome::complete;
+  } else if (!separated && have_inner_point_in_common(a, b, monitor_of(run))) {
     answer.verdict = Verdict::intersecting;
+    answer.outcome = Outcome::complete;
     answer.distance = 0;
   } else if (separated && !found.certain) {
     answer.verdict = Verdict::undecided;
+    answer.outcome = Outcome::at_rounding;
     answer.distance.lower = 0;
   }
 }
 
-Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
-              const WorkMonitor& monitor) {
+Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
   Collision answer;
   if (const double gap = root_gap(a, b, options.margin); gap > options.margin) {
     answer.verdict = Verdict::separated;
     answer.distance.lower = gap;
     return answer;
   }
-  answer = CollideSearch(a, b, options, monitor).run();
+  answer = CollideSearch(a, b, options, run).run();
   const bool proved = answer.verdict == Verdict::intersecting ||
                       (answer.verdict == Verdict::within && !options.prove_contact);
-  if (options.solid && !proved) make_solid(a, b, monitor, answer);
+  if (options.solid && !proved) make_solid(a, b, run, answer);
   return answer;
 }
 
 // Brings the bounds of separated surfaces, which hold for their solids too, to within a factor of 2.
-void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const WorkMonitor& monitor,
-             Collision& answer) {
+void measure(const PlacedBvh& a, const PlacedBvh& b, const Run& run, Collision& answer) {
   Distance found;
   try {
-    found = distance(a, b, {.absolute = {}, .relative = 0.5, .budget = budget}, monitor);
+    found = distance(a, b, {.absolute = {}, .relative = 0.5}, run);
   } catch (const InputError& error) {
     // An upper bound that does not fit a double takes nothing from the verdict.
     if (error.problem() == InputProblem::unrepresentable) return;
@@ -259,16 +271,14 @@ void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const
   if (answer.distance.upper <= found.distance.upper) return;
   answer.distance.upper = found.distance.upper;
   answer.witness = found.witness;
-  answer.witness_error = found.witness_error;
-  answer.at = found.at;
 }
 
 }  // namespace
 
+const char* name_of(Outcome outcome) { return name_in(outcome_names, outcome); }
 const char* name_of(Verdict verdict) { return name_in(verdict_names, verdict); }
 
-Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
-                  const WorkMonitor& monitor) {
+Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
   CollideOptions wanted = options;
   if (!wanted.tolerance) {
     wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
@@ -276,29 +286,25 @@ Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& 
   require_length(*wanted.tolerance, "collide: the tolerance");
   require_length(options.margin, "collide: the margin");
   if (options.solid) require_solids(a, b);
-  Collision answer = ask(a, b, wanted, monitor);
+  Collision answer = ask(a, b, wanted, run);
   const bool measured =
       answer.distance.upper < INFINITY && answer.distance.lower >= answer.distance.upper / 2;
   if (options.measure && answer.verdict == Verdict::separated && !measured) {
-    measure(a, b, options.budget, monitor, answer);
+    measure(a, b, run, answer);
   }
-  if (options.witness == WitnessKind::none) {
-    answer.witness.reset();
-    answer.witness_error = 0;
-    answer.at = {};
-  }
+  if (options.witness == WitnessKind::none) answer.witness.reset();
   return answer;
 }
 
 Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options,
-                  const WorkMonitor& monitor, Workspace& workspace) {
-  const PlacedPair at(a, b, workspace);
-  return collide(at.a, at.b, options, monitor);
+                  const Run& run) {
+  const PlacedPair at(a, b, workspace_of(run));
+  return collide(at.a, at.b, options, run);
 }
 
 std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
-                               const CollideOptions& options, int threads, const WorkMonitor& monitor) {
-  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), threads).answers(collide, poses, options, monitor);
+                               const CollideOptions& options, const Run& run) {
+  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(collide, poses, options, run);
 }
 
 }  // namespace snug

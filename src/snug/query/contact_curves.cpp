@@ -32,7 +32,7 @@ struct PlacedPatch {
 };
 
 // Result for two pieces; `late`: they are as small as was asked, but smaller ones may be separable.
-struct Outcome {
+struct PairOutcome {
   enum class State : std::uint8_t { apart, arcs, unresolved, split, late } state = State::apart;
   std::vector<CutArc> arcs;
   std::vector<Box3> end_boxes;
@@ -51,25 +51,25 @@ class Cutter {
     return {std::move(patch), std::move(placed)};
   }
 
-  [[nodiscard]] Outcome compare(const PlacedPatch& a, const PlacedPatch& b) const {
+  [[nodiscard]] PairOutcome compare(const PlacedPatch& a, const PlacedPatch& b) const {
     PieceCut found = cut(a.placed, b.placed);
-    Outcome outcome;
+    PairOutcome outcome;
     if (found.state == PieceCut::State::apart) return outcome;
     outcome.box = common_box(a.placed.box(), b.placed.box());
     const bool last = !which(a, b)[0] && !which(a, b)[1];
     if (found.state == PieceCut::State::arcs) {
       outcome.reached = std::all_of(found.arcs.begin(), found.arcs.end(),
                                     [&](const CutArc& arc) { return arc.deviation <= precision_; });
-      outcome.state = outcome.reached || last ? Outcome::State::arcs : Outcome::State::split;
+      outcome.state = outcome.reached || last ? PairOutcome::State::arcs : PairOutcome::State::split;
       outcome.arcs = std::move(found.arcs);
       outcome.end_boxes = std::move(found.end_boxes);
       return outcome;
     }
     const double size = std::max(longest_side(a.placed.box()), longest_side(b.placed.box()));
     outcome.reached = size <= precision_;
-    outcome.state = last || size <= smallest_open * precision_ ? Outcome::State::unresolved
-                    : outcome.reached                          ? Outcome::State::late
-                                                               : Outcome::State::split;
+    outcome.state = last || size <= smallest_open * precision_ ? PairOutcome::State::unresolved
+                    : outcome.reached                          ? PairOutcome::State::late
+                                                               : PairOutcome::State::split;
     return outcome;
   }
 
@@ -271,21 +271,21 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
   std::vector<PlacedEnd> ends;
   struct Item {
     CrossingPieces pieces;
-    Outcome outcome;
+    PairOutcome outcome;
   };
   // Takes what is known, and leaves what is to be split.
   std::vector<Item> late;
   const auto take = [&](Item&& item, std::vector<CrossingPieces>& rest) {
-    Outcome& outcome = item.outcome;
-    if (outcome.state == Outcome::State::late) late.push_back(std::move(item));
-    if (outcome.state == Outcome::State::split) rest.push_back(std::move(item.pieces));
-    if (outcome.state == Outcome::State::arcs || outcome.state == Outcome::State::unresolved) {
+    PairOutcome& outcome = item.outcome;
+    if (outcome.state == PairOutcome::State::late) late.push_back(std::move(item));
+    if (outcome.state == PairOutcome::State::split) rest.push_back(std::move(item.pieces));
+    if (outcome.state == PairOutcome::State::arcs || outcome.state == PairOutcome::State::unresolved) {
       result.reached = result.reached && outcome.reached;
     }
-    if (outcome.state == Outcome::State::unresolved) {
+    if (outcome.state == PairOutcome::State::unresolved) {
       result.unresolved.push_back({outcome.box, item.pieces.roots, item.pieces.contact});
     }
-    if (outcome.state != Outcome::State::arcs) return;
+    if (outcome.state != PairOutcome::State::arcs) return;
     for (const Box3& box : outcome.end_boxes) {
       result.unresolved.push_back({box, item.pieces.roots, item.pieces.contact});
     }
@@ -322,7 +322,7 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
       const Box3 box = common_box(a.placed.box(), b.placed.box());
       if (!box.empty()) result.unresolved.push_back({box, p.roots, p.contact});
     }
-    result.reached = result.reached && rest.empty();
+    result.budget_spent = result.budget_spent || !rest.empty();
   };
   std::vector<CrossingPieces> frontier;
   std::vector<Item> first(pieces.size());
@@ -357,8 +357,8 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
         for (const PlacedPatch& p : parts_a) {
           for (const PlacedPatch& q : parts_b) {
             ++compared[i];
-            Outcome outcome = cutter.compare(p, q);
-            if (outcome.state == Outcome::State::apart) continue;
+            PairOutcome outcome = cutter.compare(p, q);
+            if (outcome.state == PairOutcome::State::apart) continue;
             found[i].push_back({{{p.patch, q.patch}, whole.roots, whole.contact}, std::move(outcome)});
           }
         }

@@ -50,6 +50,7 @@ struct CutSurfaces {
   std::vector<UnresolvedPieces> unresolved;
   std::uint64_t compared = 0;  ///< pairs of pieces
   bool reached = true;         ///< false if open pieces are coarser than the precision
+  bool budget_spent = false;   ///< and others were not compared any further
 };
 
 /// Splits pieces until they are apart, cut each other in arcs as near to straight lines as `precision`, or have no

@@ -16,9 +16,12 @@
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 200'000;
 
 // Pieces of regions are at most this share of the larger surface; those of which nothing is proved are split so many
 // times smaller.
@@ -50,14 +53,15 @@ Box3 box_of(const Triangle& base, double radius) {
 
 class ContactsSearch {
  public:
-  ContactsSearch(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options,
-                 const WorkMonitor& monitor)
+  ContactsSearch(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const Run& run)
       : models_{&a.model, &b.model},
         frames_(a, b),
         options_(options),
-        monitor_(monitor),
-        tolerance_(frames_.length_up(*options.tolerance)),
-        within_(frames_.length_down(*options.tolerance)) {}
+        run_(run),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)),
+        tolerance_(frames_.length_up(*options.within)),
+        within_(frames_.length_down(*options.within)) {}
 
   Contacts run() {
     walk();
@@ -74,7 +78,7 @@ class ContactsSearch {
 
   // Breadth first: where the budget ends, what is left is about equally large.
   void walk() {
-    answer_.complete = answer_.reached = true;
+    answer_.exhaustive = true;
     std::deque<NodePair> queue{walk_.roots()};
     const double size = static_cast<double>(std::max(walk_.size(queue[0], 0), walk_.size(queue[0], 1)));
     fine_ = std::max(largest_share * size, tolerance_);
@@ -88,15 +92,18 @@ class ContactsSearch {
       }
       const PairWalk::Opening opening = walk_.opening(pair);
       const bool none = opening == PairWalk::Opening::none;
-      if (pair.bounded() && (none || !walk_.may_open(pair, opening, options_.budget))) {
+      if (pair.bounded() && (none || !walk_.may_open(pair, opening, max_splits_))) {
         const PiecePair pieces = pieces_.nearest(pair);
         // Pieces that cannot be split are as fine as they get.
-        if (!none || (within_ > 0 && !(pieces.near_distance <= within_))) answer_.reached = false;
+        if (!none || (within_ > 0 && !(pieces.near_distance <= within_))) {
+          answer_.outcome = worse(answer_.outcome, outcome_of(false, !none && stats_.splits >= max_splits_));
+        }
         list(pair, pieces);
         continue;
       }
-      if (queue.size() + near_.size() > options_.budget) {
-        answer_.complete = answer_.reached = false;
+      if (queue.size() + near_.size() > max_splits_) {
+        answer_.exhaustive = false;
+        answer_.outcome = Outcome::budget_spent;
         return;
       }
       opened.clear();
@@ -150,10 +157,11 @@ class ContactsSearch {
       ContactPair& item = near_[i];
       if (item.pieces[0]) crossing.push_back({std::move(item.pieces), item.roots, i});
     }
-    cut_ = cut_surfaces(
-        {&models_[0]->surface(), &models_[1]->surface()}, {frames_.frame(0), frames_.frame(1)}, crossing,
-        frames_.length_down(*options_.precision), options_.budget, options_.threads, monitor_);
-    answer_.reached = answer_.reached && cut_.reached;
+    cut_ =
+        cut_surfaces({&models_[0]->surface(), &models_[1]->surface()}, {frames_.frame(0), frames_.frame(1)},
+                     crossing, frames_.length_down(*options_.error), max_splits_, run_.threads, monitor_);
+    answer_.outcome =
+        worse(answer_.outcome, outcome_of(cut_.reached && !cut_.budget_spent, cut_.budget_spent));
     arc_in_.assign(near_.size(), ChainArc::none);
     for (std::uint32_t i = 0; i < cut_.arcs.size(); ++i) {
       std::uint32_t& known = arc_in_[cut_.arcs[i].contact];
@@ -268,16 +276,14 @@ class ContactsSearch {
   void set_witness(const std::array<PatchId, 2>& roots, const std::array<TriangleParameter, 2>& at,
                    ContactRegion& region) const {
     const PowerOfTwo back = frames_.to_mesh_units();
-    double error = 0;
     for (std::size_t s = 0; s < 2; ++s) {
       const LimitSurface& surface = models_[s]->surface();
       const Patch patch = surface.patch(roots[s]);
       const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, at[s]).from(patch.origin));
-      region.witness[s] = require_representable(back.apply(point.position));
-      region.at[s] = place_of(surface, roots[s], at[s]);
-      error = std::max(error, point.error);
+      region.witness[s] = {require_representable(back.apply(point.position)),
+                           unscaled_up(point.error, back) + underflow_error,
+                           place_of(surface, roots[s], at[s])};
     }
-    region.witness_error = unscaled_up(error, back) + underflow_error;
   }
 
   void add_curves() {
@@ -333,7 +339,9 @@ class ContactsSearch {
   PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
   PiecePairs pieces_{frames_, stats_};
   const ContactsOptions& options_;
+  Run run_;
   const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   double tolerance_, within_;
   double fine_ = 0;
   std::vector<ContactPair> near_;
@@ -345,27 +353,26 @@ class ContactsSearch {
 
 }  // namespace
 
-Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options,
-                  const WorkMonitor& monitor) {
+Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const Run& run) {
   ContactsOptions wanted = options;
   const double share = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
-  if (!wanted.tolerance) wanted.tolerance = share;
-  if (!wanted.precision) wanted.precision = share;
-  require_length(*wanted.tolerance, "contacts: the tolerance");
-  require_length(*wanted.precision, "contacts: the precision");
-  require_value(*wanted.precision > 0 || !options.precision, "contacts: the precision must be positive");
-  if (root_gap(a, b, *wanted.tolerance) > *wanted.tolerance) {
+  if (!wanted.within) wanted.within = share;
+  if (!wanted.error) wanted.error = share;
+  require_length(*wanted.within, "contacts: 'within'");
+  require_length(*wanted.error, "contacts: the error");
+  require_value(*wanted.error > 0 || !options.error, "contacts: the error must be positive");
+  if (root_gap(a, b, *wanted.within) > *wanted.within) {
     Contacts none;
-    none.complete = none.reached = true;
+    none.exhaustive = true;
     return none;
   }
-  return ContactsSearch(a, b, wanted, monitor).run();
+  return ContactsSearch(a, b, wanted, run).run();
 }
 
 Contacts contacts(const PlacedSurface& a, const PlacedSurface& b, const ContactsOptions& options,
-                  const WorkMonitor& monitor, Workspace& workspace) {
-  const PlacedPair at(a, b, workspace);
-  return contacts(at.a, at.b, options, monitor);
+                  const Run& run) {
+  const PlacedPair at(a, b, workspace_of(run));
+  return contacts(at.a, at.b, options, run);
 }
 
 }  // namespace snug

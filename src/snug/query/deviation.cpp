@@ -19,10 +19,13 @@
 #include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
+#include <support/run.h>
 #include <support/scaling.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 50'000'000;
 
 // In common units: below, roundings would be most of an interval.
 constexpr double min_precision = 0x1p-37;
@@ -40,8 +43,7 @@ class ComparedSet {
   // and all as it was, where there would be too many.
   virtual std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) = 0;
   [[nodiscard]] virtual BoundedPoint point(std::uint32_t piece, TriangleParameter at) const = 0;
-  [[nodiscard]] virtual std::optional<SurfaceParameter> place(std::uint32_t piece,
-                                                              TriangleParameter at) const = 0;
+  [[nodiscard]] virtual std::optional<Place> place(std::uint32_t piece, TriangleParameter at) const = 0;
 
   // Was there one that would have been too many?
   [[nodiscard]] bool is_full() const { return full_; }
@@ -69,20 +71,19 @@ class TriangleSet final : public ComparedSet {
   [[nodiscard]] BoundedPoint point(std::uint32_t piece, TriangleParameter at) const override {
     return {point_of(quadratics_[piece], at), 0x1p-48};
   }
-  [[nodiscard]] std::optional<SurfaceParameter> place(std::uint32_t, TriangleParameter) const override {
+  [[nodiscard]] std::optional<Place> place(std::uint32_t, TriangleParameter) const override {
     return std::nullopt;
   }
 };
 
 class SurfaceSet final : public ComparedSet {
  public:
-  SurfaceSet(const LimitSurface& surface, PowerOfTwo scale, double error, const DeviationOptions& options,
-             const WorkMonitor& monitor)
+  SurfaceSet(const LimitSurface& surface, PowerOfTwo scale, double error, const Run& run)
       : surface_(surface),
         to_common_(scale * surface.scale().inverse()),
-        threads_(options.threads),
-        max_(pieces_beside + options.budget / parts_a_piece),
-        monitor_{.on_progress = {}, .stop = monitor.stop},
+        threads_(run.threads),
+        max_(pieces_beside + run.max_splits.value_or(default_splits) / parts_a_piece),
+        monitor_(stop_only(run)),
         pieces_(quadratic_pieces(surface, own(error), threads_, monitor_)) {
     take();
   }
@@ -100,8 +101,7 @@ class SurfaceSet final : public ComparedSet {
     const BoundedPoint own = limit_point(patch, to_face(pieces_[piece].path, at)).from(patch.origin);
     return unscaled(own, to_common_);
   }
-  [[nodiscard]] std::optional<SurfaceParameter> place(std::uint32_t piece,
-                                                      TriangleParameter at) const override {
+  [[nodiscard]] std::optional<Place> place(std::uint32_t piece, TriangleParameter at) const override {
     return place_of(surface_, pieces_[piece].root, to_face(pieces_[piece].path, at));
   }
 
@@ -153,6 +153,7 @@ class HausdorffBound {
   }
   [[nodiscard]] bool resolved() const { return unresolved_.empty(); }
   [[nodiscard]] bool open() const { return !active_.empty(); }
+  [[nodiscard]] bool ended() const { return farthest_.ended; }
 
   // Marks the pieces whose errors are in the way.
   void mark(const ComparedSet& of, std::span<std::uint8_t> marks) const {
@@ -194,10 +195,8 @@ class HausdorffBound {
     result.distance = {unscaled_down(std::max(0.0, farthest_.lower), back),
                        require_representable(unscaled_up(farthest_.upper, back))};
     const BoundedPoint from = unscaled(from_point_, back);
-    result.from = require_representable(from.position);
-    result.error = from.error;
+    result.from = {require_representable(from.position), from.error, at_};
     result.to = require_representable(back.apply(to_point_));
-    result.at = at_;
     return result;
   }
 
@@ -219,7 +218,7 @@ class HausdorffBound {
   bool found_ = false;
   BoundedPoint from_point_;
   Point3 to_point_;
-  std::optional<SurfaceParameter> at_;
+  std::optional<Place> at_;
 };
 
 // Is a point, in common units, inside of a closed surface?
@@ -253,17 +252,17 @@ struct ScaledOptions {
     } else {
       precision = std::max(1e-4 * size, min_precision);
     }
-    if (options.tolerance) {
-      require_length(*options.tolerance, "deviation: the tolerance");
-      tolerance = scale.apply(*options.tolerance) * (1 - 4 * unit_roundoff);
+    if (options.threshold) {
+      require_length(*options.threshold, "deviation: the threshold");
+      threshold = scale.apply(*options.threshold) * (1 - 4 * unit_roundoff);
     }
   }
-  [[nodiscard]] HausdorffOptions options(const DeviationOptions& given) const {
+  [[nodiscard]] HausdorffOptions options(const Run& run) const {
     // Less by the roundings of the way back.
     return {.precision = precision * (1 - 0x1p-10),
-            .tolerance = tolerance,
-            .budget = given.budget,
-            .threads = given.threads};
+            .threshold = threshold,
+            .budget = run.max_splits.value_or(default_splits),
+            .threads = run.threads};
   }
 
   [[nodiscard]] double last_error() const { return last_share * precision; }
@@ -272,12 +271,12 @@ struct ScaledOptions {
   PowerOfTwo scale;  // from mesh units
   double size;
   double precision = 0;
-  std::optional<double> tolerance{};
+  std::optional<double> threshold{};
 };
 
 // Is the interval as narrow as it was asked for, or does it answer the question?
 bool is_reached(const Interval& distance, const DeviationOptions& options, double precision) {
-  if (options.tolerance && (distance.upper <= *options.tolerance || distance.lower > *options.tolerance)) {
+  if (options.threshold && (distance.upper <= *options.threshold || distance.lower > *options.threshold)) {
     return true;
   }
   return distance.upper - distance.lower <= precision;
@@ -290,23 +289,23 @@ OneSidedDistance farther(const OneSidedDistance& a, const OneSidedDistance& b) {
 }
 
 Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& candidate,
-                  const ScaledOptions& asked, const DeviationOptions& options, const WorkMonitor& monitor) {
+                  const ScaledOptions& asked, const DeviationOptions& options, const Run& run) {
   std::vector<HausdorffBound> directions;
-  directions.emplace_back(surface, candidate, asked.options(options));
+  directions.emplace_back(surface, candidate, asked.options(run));
   if (options.solid) {
     const PowerOfTwo from_common = model.surface().scale() * asked.scale.inverse();
     for (const bool inside : {true, false}) {
-      HausdorffOptions one_side = asked.options(options);
+      HausdorffOptions one_side = asked.options(run);
       one_side.make_side_test = [&model, from_common, inside] {
         return side_test(model, from_common, inside);
       };
       directions.emplace_back(candidate, surface, std::move(one_side));
     }
   } else {
-    directions.emplace_back(candidate, surface, asked.options(options));
+    directions.emplace_back(candidate, surface, asked.options(run));
   }
 
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  const WorkMonitor quiet = stop_only(run);
   double error = asked.first_error();
   double done = 0;
   const auto all_resolved = [&] {
@@ -317,9 +316,9 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
     const bool last = error <= asked.last_error() || surface.is_full() || candidate.is_full();
     for (HausdorffBound& direction : directions) {
       if (!direction.open()) continue;
-      direction.resolve(last, stop_only);
+      direction.resolve(last, quiet);
       done += (1 - done) / static_cast<double>(2 * directions.size());
-      monitor.report(done);
+      monitor_of(run).report(done);
     }
     if (last || all_resolved()) break;
     error = std::max(next_share * error, asked.last_error());
@@ -345,12 +344,16 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
     result.from_candidate = farther(*result.inside, *result.outside);
   }
   const double precision = unscaled_up(asked.precision, back);
-  result.reached = is_reached(result.from_surface.distance, options, precision) &&
-                   is_reached(result.from_candidate.distance, options, precision);
+  bool reached = is_reached(result.from_surface.distance, options, precision) &&
+                 is_reached(result.from_candidate.distance, options, precision);
   for (const auto& side : {result.inside, result.outside}) {
-    if (side) result.reached = result.reached && is_reached(side->distance, options, precision);
+    if (side) reached = reached && is_reached(side->distance, options, precision);
   }
-  monitor.report(1);
+  const bool spent =
+      surface.is_full() || candidate.is_full() ||
+      std::any_of(directions.begin(), directions.end(), [](const HausdorffBound& q) { return q.ended(); });
+  result.outcome = outcome_of(reached, spent);
+  monitor_of(run).report(1);
   return result;
 }
 
@@ -375,7 +378,7 @@ void require_closed_if_solid(const SurfaceBvh& model, const DeviationOptions& op
 }  // namespace
 
 Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate,
-                    const DeviationOptions& options, const WorkMonitor& monitor) {
+                    const DeviationOptions& options, const Run& run) {
   require_value(!candidate.empty(), "deviation: the candidate has no triangles");
   require_value(candidate.size() < WideBvh::leaf_bit,
                 "deviation: the candidate has more than 2^31 triangles; compare parts of it");
@@ -385,28 +388,28 @@ Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate
   const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : surface.scale();
   const ScaledOptions asked(options, surface, own);
   require_closed_if_solid(model, options);
-  SurfaceSet first(surface, asked.scale, asked.first_error(), options, monitor);
+  SurfaceSet first(surface, asked.scale, asked.first_error(), run);
   TriangleSet second(candidate, asked.scale);
-  return compare(model, first, second, asked, options, monitor);
+  return compare(model, first, second, asked, options, run);
 }
 
 Deviation deviation(const SurfaceBvh& model, const SurfaceBvh& candidate, const DeviationOptions& options,
-                    const WorkMonitor& monitor) {
+                    const Run& run) {
   const ScaledOptions asked(options, model.surface(), candidate.surface().scale());
   require_closed_if_solid(model, options);
-  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), options, monitor);
-  SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), options, monitor);
-  return compare(model, first, second, asked, options, monitor);
+  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), run);
+  SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), run);
+  return compare(model, first, second, asked, options, run);
 }
 
 Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
-                    const DeviationOptions& options, const WorkMonitor& monitor) {
-  return deviation(surface.data()->bvh(), candidate, options, monitor);
+                    const DeviationOptions& options, const Run& run) {
+  return deviation(surface.data()->bvh(), candidate, options, run);
 }
 
 Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,
-                    const WorkMonitor& monitor) {
-  return deviation(surface.data()->bvh(), candidate.data()->bvh(), options, monitor);
+                    const Run& run) {
+  return deviation(surface.data()->bvh(), candidate.data()->bvh(), options, run);
 }
 
 }  // namespace snug

@@ -9,8 +9,8 @@
 namespace snug {
 
 [[nodiscard]] Deviation deviation(const SurfaceBvh& surface, std::span<const Triangle> candidate,
-                                  const DeviationOptions& options, const WorkMonitor& monitor = {});
+                                  const DeviationOptions& options, const Run& run = {});
 [[nodiscard]] Deviation deviation(const SurfaceBvh& surface, const SurfaceBvh& candidate,
-                                  const DeviationOptions& options, const WorkMonitor& monitor = {});
+                                  const DeviationOptions& options, const Run& run = {});
 
 }  // namespace snug

@@ -11,9 +11,12 @@
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/ordering.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 1'000'000;
 
 constexpr int max_attempts = 64;
 // Pairs that are followed down at the same time for a first upper bound.
@@ -30,11 +33,11 @@ bool farther(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
 
 class DistanceSearch {
  public:
-  DistanceSearch(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
-                 const WorkMonitor& monitor)
+  DistanceSearch(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options, const Run& run)
       : frames_(a, b),
         options_(options),
-        monitor_(monitor),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)),
         bounds_(frames_.length_down(*options.absolute), *options.relative, noise) {
     bounds_.raise_lower(frames_.length_down(outer_gap(a, b)));
   }
@@ -72,8 +75,8 @@ class DistanceSearch {
                  height_b = dot(w, witness_.points[1] - Point3{}) - room;
     thread_local std::array<std::vector<Node>, 2> beyond;
     for (std::vector<Node>& side : beyond) side.clear();
-    if (!pieces_.beyond(0, w, height_a, room / 4, max_beyond, options_.budget, beyond[0]) ||
-        !pieces_.beyond(1, -w, -height_b, room / 4, max_beyond, options_.budget, beyond[1])) {
+    if (!pieces_.beyond(0, w, height_a, room / 4, max_beyond, max_splits_, beyond[0]) ||
+        !pieces_.beyond(1, -w, -height_b, room / 4, max_beyond, max_splits_, beyond[1])) {
       return false;
     }
     const NodePair roots = walk_.roots();
@@ -123,7 +126,10 @@ class DistanceSearch {
       bounds_.prune(gap);
       return true;
     }
-    if (!walk_.may_open(pair, opening, options_.budget)) return false;
+    if (!walk_.may_open(pair, opening, max_splits_)) {
+      budget_spent_ = stats_.splits >= max_splits_;
+      return false;
+    }
     const std::size_t first = stack.size();
     bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), stack)));
     ordering::sort(stack.data() + first, stack.size() - first, farther);
@@ -171,7 +177,7 @@ class DistanceSearch {
     const PowerOfTwo back = frames_.to_mesh_units();
     answer.distance = {unscaled_down(bounds_.lower(), back),
                        require_representable(unscaled_up(bounds_.upper(), back))};
-    answer.reached = near_enough(answer.distance, options_);
+    answer.outcome = outcome_of(near_enough(answer.distance, options_), budget_spent_);
     pieces_.write_to(witness_, answer);
     return answer;
   }
@@ -182,39 +188,41 @@ class DistanceSearch {
   PiecePairs pieces_{frames_, stats_};
   const DistanceOptions& options_;
   const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   DistanceBounds bounds_;
   Witness witness_;
   int attempts_ = 0;
+  bool budget_spent_ = false;
 };
 
 }  // namespace
 
-Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
-                  const WorkMonitor& monitor) {
+Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options, const Run& run) {
   const DistanceOptions wanted = with_precision(options, a.model.surface().size(), b.model.surface().size());
   if (options.solid) require_solids(a, b);
-  Distance answer = DistanceSearch(a, b, wanted, monitor).run();
+  Distance answer = DistanceSearch(a, b, wanted, run).run();
   if (!options.solid || answer.distance.upper == 0) return answer;
-  const Nesting found = answer.distance.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
+  const Nesting found =
+      answer.distance.lower > 0 ? nesting(a, b, monitor_of(run)) : common_point(a, b, monitor_of(run));
   if (found.inner) {
     found.write_to(answer);
-    answer.reached = true;
+    answer.outcome = Outcome::complete;
   } else if (!found.certain) {
     answer.distance.lower = 0;
-    answer.reached = near_enough(answer.distance, wanted);
+    if (!near_enough(answer.distance, wanted)) answer.outcome = worse(answer.outcome, Outcome::at_rounding);
   }
   return answer;
 }
 
 Distance distance(const PlacedSurface& a, const PlacedSurface& b, const DistanceOptions& options,
-                  const WorkMonitor& monitor, Workspace& workspace) {
-  const PlacedPair at(a, b, workspace);
-  return distance(at.a, at.b, options, monitor);
+                  const Run& run) {
+  const PlacedPair at(a, b, workspace_of(run));
+  return distance(at.a, at.b, options, run);
 }
 
 std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
-                               const DistanceOptions& options, int threads, const WorkMonitor& monitor) {
-  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), threads).answers(distance, poses, options, monitor);
+                               const DistanceOptions& options, const Run& run) {
+  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(distance, poses, options, run);
 }
 
 }  // namespace snug

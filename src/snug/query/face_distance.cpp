@@ -89,8 +89,8 @@ std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
   return require_representable(unscaled_up(most, surface.scale().inverse()));
 }
 
-std::optional<double> limit_to_faces(const Surface& surface, int threads) {
-  return limit_to_faces(surface.data()->limit(), threads);
+std::optional<double> limit_to_faces(const Surface& surface, const Run& run) {
+  return limit_to_faces(surface.data()->limit(), run.threads);
 }
 
 }  // namespace snug

@@ -91,8 +91,8 @@ class Chunk {
   // Distance that parts need not be below.
   [[nodiscard]] double goal() const {
     const double wanted = found_.lower + options_.precision;
-    if (!options_.tolerance) return wanted;
-    return found_.lower > *options_.tolerance ? INFINITY : std::max(wanted, *options_.tolerance);
+    if (!options_.threshold) return wanted;
+    return found_.lower > *options_.threshold ? INFINITY : std::max(wanted, *options_.threshold);
   }
 
   bool resolve(Part& part, const SideTest& side_test) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/search/quadratic_bvh.h>
 
 namespace snug {
@@ -23,7 +23,7 @@ using SideTest = std::function<std::optional<bool>(const Point3& point, double e
 
 struct HausdorffOptions {
   double precision;                 ///< wanted: upper - lower <= precision
-  std::optional<double> tolerance;  ///< ... or that one of them decides whether the distance is greater
+  std::optional<double> threshold;  ///< ... or that one of them decides whether the distance is greater
   std::function<SideTest()> make_side_test{};  ///< count only points on this side of the other set
   std::uint64_t budget;                        ///< most parts to be compared
   int threads = 0;

@@ -18,6 +18,7 @@
 #include <snug/query/pair_queries.h>
 #include <snug/query/tessellate.h>
 #include <snug/search/piece.h>
+#include <snug/search/precision.h>
 #include <snug/search/quadratic_bvh.h>
 #include <snug/search/self_contact.h>
 #include <snug/surface/evaluate.h>
@@ -27,9 +28,12 @@
 #include <support/error.h>
 #include <support/names.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 1'000'000;
 
 using Names = std::array<std::uint32_t, 3>;
 
@@ -116,8 +120,9 @@ void keep_some(std::vector<HullProblem>& problems) {
   if (problems.size() > max_problems) problems.resize(max_problems);
 }
 
-std::uint64_t max_pieces(const LimitSurface& surface, const HullOptions& options) {
-  const std::uint64_t triangles = std::max<std::uint64_t>(options.budget, surface.patch_count());
+std::uint64_t max_pieces(const LimitSurface& surface, const Run& run) {
+  const std::uint64_t triangles =
+      std::max<std::uint64_t>(run.max_splits.value_or(default_splits), surface.patch_count());
   return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
 }
 
@@ -126,14 +131,17 @@ class OneHull {
  public:
   // `pieces`: for both sides, once one of them has triangles enough to be kept off them.
   OneHull(const LimitSurface& surface, const HullOptions& options, bool inner,
-          std::vector<QuadraticPiece>& pieces, const WorkMonitor& monitor)
+          std::vector<QuadraticPiece>& pieces, const Run& run)
       : surface_(surface),
         options_(options),
         inner_(inner),
-        monitor_{.on_progress = {}, .stop = monitor.stop},
+        monitor_(stop_only(run)),
+        run_{.threads = run.threads,
+             .monitor = &monitor_,
+             .max_splits = run.max_splits.value_or(default_splits)},
         scale_(surface.scale()),
         float_loss_(options.single_precision ? largest_float_loss() : 0),
-        tolerances_(surface.owner_count(), first_share * options.tolerance),
+        tolerances_(surface.owner_count(), first_share * *options.error),
         first_pieces_(pieces) {}
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
@@ -147,15 +155,17 @@ class OneHull {
       problems_.clear();
       wrong_.assign(surface_.owner_count(), 0);
       move_vertices();
-      if (!mesh_.reached && !problems_.empty()) break;
+      if (!whole_mesh() && !problems_.empty()) break;
       if (!tree_ && !make_pieces()) break;
       piece_marks_.assign(pieces_.size(), 0);
       if (!any_turned_) keep_off();
       if (problems_.empty()) break;
-      if (round + 1 == max_rounds || !mesh_.reached || !refine()) break;
+      if (round + 1 == max_rounds || !whole_mesh() || !refine()) break;
     }
     return std::move(problems_);
   }
+  // Did the budget allow for all triangles?
+  [[nodiscard]] bool whole_mesh() const { return mesh_.outcome == Outcome::complete; }
   [[nodiscard]] bool has_border_edges() const { return border_; }
   // Oriented outward.
   [[nodiscard]] Hull take() {
@@ -167,9 +177,7 @@ class OneHull {
 
  private:
   void make_triangles() {
-    LocalTessellation made =
-        tessellate(surface_, tolerances_,
-                   {.normals = false, .budget = options_.budget, .threads = options_.threads}, monitor_);
+    LocalTessellation made = tessellate(surface_, tolerances_, {.normals = false}, run_);
     mesh_ = std::move(made.mesh);
     errors_ = std::move(made.errors);
     begins_.assign(mesh_.positions.size() + 1, 0);
@@ -186,9 +194,8 @@ class OneHull {
   // False, with a problem, if there would be too many.
   bool make_pieces() {
     if (first_pieces_.empty()) {
-      const double error = quadratic_share * first_share * scale_.apply(options_.tolerance);
-      first_pieces_ =
-          quadratic_pieces(surface_, error, options_.threads, monitor_, max_pieces(surface_, options_));
+      const double error = quadratic_share * first_share * scale_.apply(*options_.error);
+      first_pieces_ = quadratic_pieces(surface_, error, run_.threads, monitor_, max_pieces(surface_, run_));
     }
     if (first_pieces_.empty()) return blame_budget();
     pieces_ = first_pieces_;
@@ -203,7 +210,7 @@ class OneHull {
     quadratics_.clear();
     quadratics_.reserve(pieces_.size());
     for (const QuadraticPiece& piece : pieces_) quadratics_.push_back(piece.quadratic);
-    tree_ = std::make_unique<QuadraticBvh>(quadratics_, options_.threads);
+    tree_ = std::make_unique<QuadraticBvh>(quadratics_, run_.threads);
   }
 
   [[nodiscard]] Triangle scaled(const std::vector<Point3>& points, const Names& t) const {
@@ -220,7 +227,7 @@ class OneHull {
 
   // How far a vertex of a hull is at most moved when it becomes a float.
   [[nodiscard]] double largest_float_loss() const {
-    const double largest = scale_.inverse().apply(2) + options_.tolerance;
+    const double largest = scale_.inverse().apply(2) + *options_.error;
     return 2 * (0x1p-24 * largest + 0x1p-150);
   }
   // The coordinates that are handed out.
@@ -243,7 +250,7 @@ class OneHull {
     const double sign = inner_ != inward_ ? -1 : 1;
     std::vector<Vector3> normals(mesh_.triangles.size());
     std::vector<double> offsets(mesh_.triangles.size());
-    parallel_for(normals.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(normals.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
         offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss_;
@@ -251,7 +258,7 @@ class OneHull {
     });
     hull_ = mesh_.positions;
     std::vector<double> moved(hull_.size());
-    parallel_for(hull_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(hull_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       monitor_.checkpoint();
       std::vector<Vector3> planes;
       for (std::size_t v = begin; v < end; ++v) {
@@ -285,9 +292,9 @@ class OneHull {
       const double gap =
           most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors_[t]);
       gap_ = std::max(gap_, gap);
-      if (gap <= options_.tolerance) {
+      if (gap <= *options_.error) {
         // Corners that moved sideways past each other: most of these facets meet others, and finding them is cheap.
-        if (tolerances_[mesh_.owners[t]] > turned_share * options_.tolerance &&
+        if (tolerances_[mesh_.owners[t]] > turned_share * *options_.error &&
             sign * dot(unit_normal(scaled(hull_, names)), normals[t]) < 0) {
           blame(HullFault::meets_itself, t, mesh_.positions[names[0]]);
           any_turned_ = true;
@@ -297,7 +304,7 @@ class OneHull {
       const std::size_t k = static_cast<std::size_t>(
           std::max_element(names.begin(), names.end(), [&](auto a, auto b) { return moved[a] < moved[b]; }) -
           names.begin());
-      blame(mesh_.reached ? HullFault::no_position : HullFault::too_few_triangles, t,
+      blame(whole_mesh() ? HullFault::no_position : HullFault::too_few_triangles, t,
             mesh_.positions[names[k]]);
     }
   }
@@ -306,7 +313,7 @@ class OneHull {
   void keep_off() {
     const std::size_t count = mesh_.triangles.size();
     std::vector<std::uint8_t> meets(count);
-    parallel_for(count, options_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(count, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (t % 256 == 0) monitor_.checkpoint();
         if (wrong_[mesh_.owners[t]] != 0) continue;  // there is no position, or none that is near enough
@@ -328,8 +335,7 @@ class OneHull {
     std::vector<Point3> points;
     points.reserve(hull_.size());
     for (const Point3& p : hull_) points.push_back(scale_.apply(p));
-    for (const auto& [a, b] :
-         self_contacts(points, mesh_.triangles, max_contacts, options_.threads, monitor_)) {
+    for (const auto& [a, b] : self_contacts(points, mesh_.triangles, max_contacts, run_.threads, monitor_)) {
       blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
     }
@@ -340,14 +346,14 @@ class OneHull {
     bool any = false;
     double error = INFINITY;
     for (std::size_t owner = 0; owner < tolerances_.size(); ++owner) {
-      if (wrong_[owner] == 0 || tolerances_[owner] <= wrong_[owner] * options_.tolerance) continue;
+      if (wrong_[owner] == 0 || tolerances_[owner] <= wrong_[owner] * *options_.error) continue;
       tolerances_[owner] /= 2;
       error = std::min(error, tolerances_[owner]);
       any = true;
     }
     if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
-      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error),
-                        options_.threads, monitor_, max_pieces(surface_, options_))
+      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error), run_.threads,
+                        monitor_, max_pieces(surface_, run_))
                     .pieces;
       if (pieces_.empty()) return blame_budget();
       make_tree();
@@ -359,6 +365,7 @@ class OneHull {
   const HullOptions& options_;
   bool inner_;
   WorkMonitor monitor_;
+  Run run_;  // with this monitor
   PowerOfTwo scale_;
   double float_loss_;               // mesh units
   std::vector<double> tolerances_;  // of owners
@@ -408,12 +415,12 @@ class FacetSurface {
 // All that is claimed, by queries that know nothing of how the hulls were made.
 class Verification {
  public:
-  Verification(const SurfaceBvh& model, const HullOptions& options, const Hulls& hulls,
-               const WorkMonitor& monitor)
+  Verification(const SurfaceBvh& model, const HullOptions& options, const Hulls& hulls, const Run& run)
       : model_(model),
         options_(options),
         hulls_(hulls),
-        monitor_{.on_progress = {}, .stop = monitor.stop},
+        monitor_(stop_only(run)),
+        run_{.threads = run.threads, .monitor = &monitor_},
         largest_count_(largest_count(hulls)),
         own_(model, max_kept()) {}
 
@@ -455,7 +462,7 @@ class Verification {
     std::vector<Member> points;
     for (const PatchId p : model.solid().components()) {
       const SurfacePoint at = evaluate(surface, place_of(surface, p, {1.0 / 3, 1.0 / 3}));
-      points.push_back({at.position, surface.place(p).owner});
+      points.push_back({at.point, surface.place(p).owner});
       // Sets that do not meet must be farther apart than this: then the limit point is on the side of the double.
       certain_gap_ = std::max(certain_gap_, 2 * at.error);
     }
@@ -476,25 +483,22 @@ class Verification {
     std::vector<Point3> points;
     points.reserve(hull.positions.size());
     for (const Point3& p : hull.positions) points.push_back(model_.surface().scale().apply(p));
-    for (const auto& [a, b] :
-         self_contacts(points, hull.triangles, max_problems, options_.threads, monitor_)) {
+    for (const auto& [a, b] : self_contacts(points, hull.triangles, max_problems, run_.threads, monitor_)) {
       blame_triangle(HullFault::meets_itself, a);
     }
     return problems_.size() == before;
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
-    const Collision found = collide(a, b,
-                                    {.tolerance = 0,
-                                     .margin = certain_gap_,
-                                     .budget = splits_beside + splits_a_triangle * largest_count_,
-                                     .witness = WitnessKind::approximate,
-                                     .measure = false},
-                                    monitor_);
+    const Collision found = collide(
+        a, b, {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .measure = false},
+        {.monitor = &monitor_, .max_splits = splits_beside + splits_a_triangle * largest_count_});
     if (found.verdict == Verdict::separated) return;
     std::optional<std::uint32_t> owner;
-    if (found.at[0])
-      owner = fault == HullFault::meets_other ? hulls_.inner->owners[found.at[0]->owner] : found.at[0]->owner;
-    blame(fault, inner, found.witness ? (*found.witness)[0] : Point3{}, owner);
+    if (found.witness && (*found.witness)[0].at) {
+      const std::uint32_t of_a = (*found.witness)[0].at->owner;
+      owner = fault == HullFault::meets_other ? hulls_.inner->owners[of_a] : of_a;
+    }
+    blame(fault, inner, found.witness ? (*found.witness)[0].point : Point3{}, owner);
   }
   void near(const Hull& hull, bool inner) {
     std::vector<Triangle> facets;
@@ -502,23 +506,20 @@ class Verification {
     for (const Names& t : hull.triangles) {
       facets.push_back({hull.positions[t[0]], hull.positions[t[1]], hull.positions[t[2]]});
     }
-    const Deviation found = deviation(model_, facets,
-                                      {.absolute = 0x1p-6 * options_.tolerance,
-                                       .tolerance = options_.tolerance,
-                                       .threads = options_.threads},
-                                      monitor_);
+    const Deviation found =
+        deviation(model_, facets, {.absolute = 0x1p-6 * *options_.error, .threshold = *options_.error}, run_);
     for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
-      if (side->distance.upper <= options_.tolerance) continue;
+      if (side->distance.upper <= *options_.error) continue;
       std::optional<std::uint32_t> owner;
-      if (side->at) owner = side->at->owner;
-      blame(HullFault::no_position, inner, side->from, owner);
+      if (side->from.at) owner = side->from.at->owner;
+      blame(HullFault::no_position, inner, side->from.point, owner);
     }
   }
   // One lies in the solid of the other with all its components, and none of these in the solid of the one.
   void around(FacetSurface& hull, bool inner) {
     for (const bool of_hull : {false, true}) {
       for (const auto& [position, owner] : of_hull ? points_of_hull_ : own_points_) {
-        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), position, monitor_);
+        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), position, run_);
         if (inside == (of_hull == inner)) continue;
         blame(HullFault::not_around, inner, position,
               of_hull ? (inner ? hulls_.inner : hulls_.outer)->owners[owner] : owner);
@@ -530,6 +531,7 @@ class Verification {
   const HullOptions& options_;
   const Hulls& hulls_;
   WorkMonitor monitor_;
+  Run run_;                      // with this monitor
   std::uint64_t largest_count_;  // of triangles of a hull
   SurfaceWorkspace own_;
   std::vector<Member> own_points_, points_of_hull_;
@@ -542,26 +544,28 @@ class Verification {
 const char* name_of(HullFault fault) { return name_in(fault_names, fault); }
 
 std::vector<HullProblem> problems_of(const SurfaceBvh& surface, const Hulls& hulls,
-                                     const HullOptions& options, const WorkMonitor& monitor) {
-  return Verification(surface, options, hulls, monitor).run();
+                                     const HullOptions& options, const Run& run) {
+  return Verification(surface, options, hulls, run).run();
 }
 
-Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonitor& monitor) {
+Hulls hull(const SurfaceBvh& model, const HullOptions& wanted, const Run& run) {
   const LimitSurface& surface = model.surface();
-  require_value(options.tolerance > 0 && std::isfinite(options.tolerance),
-                "hull: the tolerance must be finite and greater than 0");
+  HullOptions options = wanted;
+  if (!options.error) options.error = share_of_size(1e-2, surface.size());
+  require_value(*options.error > 0 && std::isfinite(*options.error),
+                "hull: the error must be finite and greater than 0");
   // Tolerances of triangles go down to a share of it.
   const double least = surface.scale().inverse().apply(options.single_precision ? 0x1p-20 : 0x1p-30);
-  if (options.tolerance < least) {
+  if (*options.error < least) {
     throw InputError(InputProblem::value,
                      std::string("hull: ") + (options.single_precision ? "floats" : "doubles") +
-                         " allow no tolerance below " + shortest(least) +
+                         " allow no error below " + shortest(least) +
                          " for coordinates of this size; ask for that or more" +
                          (options.single_precision ? ", or write a format that holds doubles" : ""));
   }
-  if (options.tolerance > surface.size() / 2) {
+  if (*options.error > surface.size() / 2) {
     throw InputError(InputProblem::value,
-                     "hull: the tolerance is more than half of the surface's size; give at most " +
+                     "hull: the error is more than half of the surface's size; give at most " +
                          shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
@@ -569,22 +573,25 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
   Hulls result;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
-    OneHull hull(surface, options, inner, pieces, monitor);
-    const std::vector<HullProblem> problems = hull.run();
+    OneHull side(surface, options, inner, pieces, run);
+    const std::vector<HullProblem> problems = side.run();
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
-    result.closed = !hull.has_border_edges();
-    (inner ? result.inner : result.outer) = hull.take();
-    monitor.report(inner ? 0.3 : 0.6);
+    result.closed = !side.has_border_edges();
+    (inner ? result.inner : result.outer) = side.take();
+    monitor_of(run).report(inner ? 0.3 : 0.6);
   }
-  if (result.problems.empty()) result.problems = problems_of(model, result, options, monitor);
-  result.verified = result.problems.empty();
+  if (result.problems.empty()) result.problems = problems_of(model, result, options, run);
+  const bool too_few =
+      std::any_of(result.problems.begin(), result.problems.end(),
+                  [](const HullProblem& problem) { return problem.fault == HullFault::too_few_triangles; });
+  result.outcome = outcome_of(result.problems.empty(), too_few);
   keep_some(result.problems);
-  monitor.report(1);
+  monitor_of(run).report(1);
   return result;
 }
 
-Hulls hulls(const Surface& surface, const HullOptions& options, const WorkMonitor& monitor) {
-  return hulls(surface.data()->bvh(), options, monitor);
+Hulls hull(const Surface& surface, const HullOptions& options, const Run& run) {
+  return hull(surface.data()->bvh(), options, run);
 }
 
 }  // namespace snug

@@ -16,9 +16,12 @@
 #include <support/error.h>
 #include <support/ordering.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 10'000'000;
 
 constexpr double default_relative = 1e-4;
 // Of a patch: pieces take a kilobyte each.
@@ -349,8 +352,8 @@ Measures in_mesh_units(const Answer& answer, PowerOfTwo back, bool closed) {
 // it.
 class SurfaceMeasurer {
  public:
-  SurfaceMeasurer(const LimitSurface& surface, const MeasureOptions& options, const WorkMonitor& monitor)
-      : surface_(surface), options_(options), monitor_(monitor) {
+  SurfaceMeasurer(const LimitSurface& surface, const MeasureOptions& options, const Run& run)
+      : surface_(surface), options_(options), run_(run), monitor_(monitor_of(run)) {
     Box3 box;
     for (std::size_t v = 0; v < surface.mesh().vertex_count(); ++v) {
       if (!surface.topology().isolated(VertexId(v))) box.add(surface.scaled_point(VertexId(v)));
@@ -367,7 +370,8 @@ class SurfaceMeasurer {
     size_ = longest_side(box);
     origin_ = box.lower + 0.5 * (box.upper - box.lower);
     closed_ = is_closed(surface);
-    patch_splits_ = std::min<std::uint64_t>(options.budget / patches_.size(), max_splits);
+    patch_splits_ =
+        std::min<std::uint64_t>(run.max_splits.value_or(default_splits) / patches_.size(), max_splits);
     find_shares();
   }
 
@@ -389,8 +393,12 @@ class SurfaceMeasurer {
       if (answer.solid_excess > 1) tips *= std::max(0.4 / answer.solid_excess, 0x1p-20);
     }
     Measures result = in_mesh_units(answer, surface_.scale().inverse(), closed_);
-    result.reached = answer.area_excess <= 1 && answer.solid_excess <= 1;
-    for (const PatchMeasures& patch : results_) result.splits += patch.splits;
+    bool spent = false;
+    for (const PatchMeasures& patch : results_) {
+      result.splits += patch.splits;
+      spent = spent || (patch.splits >= patch_splits_ && patch_splits_ < max_splits);
+    }
+    result.outcome = outcome_of(answer.area_excess <= 1 && answer.solid_excess <= 1, spent);
     return result;
   }
 
@@ -398,7 +406,7 @@ class SurfaceMeasurer {
   // Shares of the goals: half alike, half by areas of flat triangles.
   void find_shares() {
     shares_.resize(patches_.size());
-    parallel_for(patches_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(patches_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       Patch patch;
       for (std::size_t i = begin; i < end; ++i) {
         surface_.patch(patches_[i], patch);
@@ -423,8 +431,7 @@ class SurfaceMeasurer {
     }
     std::atomic<std::size_t> count{0};
     parallel_for_with(
-        open.size(), options_.threads,
-        [&] { return PatchMeasurer(surface_, origin_, patch_splits_, monitor_); },
+        open.size(), run_.threads, [&] { return PatchMeasurer(surface_, origin_, patch_splits_, monitor_); },
         [&](PatchMeasurer& measurer, std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = open[k];
@@ -452,6 +459,7 @@ class SurfaceMeasurer {
 
   const LimitSurface& surface_;
   MeasureOptions options_;
+  Run run_;
   const WorkMonitor& monitor_;
   std::vector<PatchId> patches_;  // a quad's first patch stands for both
   std::vector<double> shares_;
@@ -464,9 +472,9 @@ class SurfaceMeasurer {
 
 }  // namespace
 
-Measures measure(const Surface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
+Measures measure(const Surface& surface, const MeasureOptions& options, const Run& run) {
   if (options.relative) require_length(*options.relative, "the relative precision");
-  return SurfaceMeasurer(surface.data()->limit(), options, monitor).run();
+  return SurfaceMeasurer(surface.data()->limit(), options, run).run();
 }
 
 }  // namespace snug

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <snug/error.h>
 #include <snug/geometry/rounding.h>
+#include <snug/run.h>
 #include <support/error.h>
 
 namespace snug {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include <snug/collide.h>
 #include <snug/search/surface_workspace.h>
 #include <snug/surface/evaluate.h>
 
@@ -17,19 +18,23 @@ struct Nesting {
   std::optional<std::size_t> inner;
   /// Is it certain that there is no other? Not where a point is too near the other surface to decide.
   bool certain = true;
-  BoundedPoint point;     ///< of the inner surface, in the outer solid; mesh units, world coordinates
-  SurfaceParameter at{};  ///< where it lies on the inner surface
+  BoundedPoint point;  ///< of the inner surface, in the outer solid; mesh units, world coordinates
+  Place at{};          ///< where it lies on the inner surface
 
+  /// This point as both witnesses. Requires:  inner.
+  [[nodiscard]] WitnessPoints witness() const {
+    const LimitPoint common{point.position, point.error, {}};
+    WitnessPoints points{common, common};
+    points[*inner].at = at;
+    return points;
+  }
   /// Writes this common point of two solids to a Collision or a Distance.
   /// Requires:  inner.
   template <class Answer>
   void write_to(Answer& answer) const {
     answer.distance = 0;
-    answer.witness = {point.position, point.position};
-    answer.witness_error = point.error;
-    answer.at = {};
-    answer.at[*inner] = at;
-    answer.inner = inner;
+    answer.witness = witness();
+    answer.contained = inner;
   }
 };
 

@@ -8,6 +8,7 @@
 #include <snug/distance.h>
 #include <snug/search/workspace.h>
 #include <snug/time_of_contact.h>
+#include <support/run.h>
 
 /// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
 namespace snug {
@@ -17,13 +18,13 @@ namespace snug {
 /// nearest parameters of their base triangles, or the limit points there, are near enough, or a proof that
 /// one crosses the other; (c) else its larger one is split, below half the tolerance too.
 [[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
-                                const WorkMonitor& monitor = {});
+                                const Run& run = {});
 
 /// Limit points where quadratics are nearest bound the distance from above; two planes across the direction of
 /// the nearest ones, and where pieces lie beyond these, pairs of nodes, the nearest first, from below. Where
 /// pieces cut each other, contact is proved as in collide().
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
-                                const WorkMonitor& monitor = {});
+                                const Run& run = {});
 
 /// A model that moves, with a workspace as in PlacedBvh.
 struct MovingBvh {
@@ -33,13 +34,11 @@ struct MovingBvh {
   std::span<const Point3> end{};  ///< as in DeformingSurface
 };
 [[nodiscard]] TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b,
-                                            const TimeOfContactOptions& options = {},
-                                            const WorkMonitor& monitor = {});
+                                            const TimeOfContactOptions& options = {}, const Run& run = {});
 
 /// Requires:  two workspaces.
 [[nodiscard]] Penetration penetration(const PlacedBvh& a, const PlacedBvh& b,
-                                      const PenetrationOptions& options = {},
-                                      const WorkMonitor& monitor = {});
+                                      const PenetrationOptions& options = {}, const Run& run = {});
 
 /// Two placed surfaces with their trees and their parts of a workspace.
 struct PlacedPair {
@@ -64,23 +63,24 @@ class PairWorkspaces {
   /// workspaces.
   /// Errors:    what `ask` throws ends the loop and is thrown again, of several one.
   using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
-  void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor = {});
+  void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor);
 
-  /// Answers of query(a, b, options, monitor), such as collide(), for each pose in order.
+  /// Answers of query(a, b, options, run), such as collide(), for each pose in order.
   /// Guarantee: the same bits as one by one, for any number of threads.
   template <class Answer, class Options>
   [[nodiscard]] std::vector<Answer> answers(Answer (*query)(const PlacedBvh&, const PlacedBvh&,
-                                                            const Options&, const WorkMonitor&),
+                                                            const Options&, const Run&),
                                             std::span<const PosePair> poses, const Options& options,
-                                            const WorkMonitor& monitor = {}) {
+                                            const Run& run = {}) {
     std::vector<Answer> result(poses.size());
-    const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+    const WorkMonitor quiet = stop_only(run);
+    const Run each{.monitor = &quiet, .max_splits = run.max_splits};
     for_each(
         poses.size(),
         [&](SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t i) {
-          result[i] = query({a.model(), a, poses[i].a}, {b.model(), b, poses[i].b}, options, stop_only);
+          result[i] = query({a.model(), a, poses[i].a}, {b.model(), b, poses[i].b}, options, each);
         },
-        monitor);
+        monitor_of(run));
     return result;
   }
 

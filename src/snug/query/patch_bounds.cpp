@@ -7,6 +7,7 @@
 #include <snug/search/surface_data.h>
 #include <snug/surface/batch_bounds.h>
 #include <support/error.h>
+#include <support/run.h>
 #include <support/scaling.h>
 
 namespace snug {
@@ -18,9 +19,11 @@ struct PatchBounds::Inside {
   std::vector<OffsetTriangle> triangles;  // of boxes in motion
 };
 
-PatchBounds::PatchBounds(const Surface& surface, int threads)
-    : inside_(new Inside{
-          surface.data(), BatchBounds(surface.data()->limit(), surface.data()->method(), threads), {}, {}}) {
+PatchBounds::PatchBounds(const Surface& surface, const Run& run)
+    : inside_(new Inside{surface.data(),
+                         BatchBounds(surface.data()->limit(), surface.data()->method(), run.threads),
+                         {},
+                         {}}) {
   for (const PatchId patch : inside_->bounds.patches()) {
     inside_->places.push_back(surface.data()->limit().place(patch));
   }
@@ -32,8 +35,8 @@ PatchBounds& PatchBounds::operator=(PatchBounds&&) noexcept = default;
 
 std::span<const PatchPlace> PatchBounds::patches() const { return inside_->places; }
 
-void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
-  inside_->bounds.update(points, out, threads);
+void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, const Run& run) {
+  inside_->bounds.update(points, out, run.threads);
 }
 
 namespace {
@@ -51,14 +54,14 @@ void add_box(const OffsetTriangle& offset, Box3& box) {
 }  // namespace
 
 void PatchBounds::update(std::span<const Point3> begin, std::span<const Point3> end, std::span<Box3> out,
-                         int threads) {
+                         const Run& run) {
   std::vector<OffsetTriangle>& triangles = inside_->triangles;
   require_value(out.size() == inside_->places.size(),
                 "patch bounds: give room for an answer for each of patches()");
   triangles.resize(out.size());
   std::fill(out.begin(), out.end(), Box3{});
   for (const std::span<const Point3> points : {begin, end}) {
-    update(points, triangles, threads);
+    update(points, triangles, run);
     for (std::size_t i = 0; i < out.size(); ++i) add_box(triangles[i], out[i]);
   }
   for (const Box3& box : out) {

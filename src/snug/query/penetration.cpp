@@ -11,9 +11,12 @@
 #include <support/direction.h>
 #include <support/error.h>
 #include <support/ordering.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 20'000;
 
 // Steps in which a length is doubled until a translation separates, and halved towards the last that did not.
 constexpr int doublings = 12, halvings = 5;
@@ -46,16 +49,12 @@ std::vector<Vector3> some_directions() {
 
 class PenetrationSearch {
  public:
-  PenetrationSearch(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
-                    const WorkMonitor& monitor)
-      : a_(a), b_(b), options_(options), monitor_(monitor) {}
+  PenetrationSearch(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options, const Run& run)
+      : a_(a), b_(b), options_(options), run_(run), monitor_(monitor_of(run)) {}
 
   Penetration run() {
     Penetration answer;
-    if (separated({})) {
-      answer.reached = true;
-      return answer;
-    }
+    if (separated({})) return answer;
     shorten();
     const double below = deepest_common_balls();
     for (const Vector3& w : outward_) {
@@ -65,11 +64,16 @@ class PenetrationSearch {
     answer.translation = best_.translation;
     const double above = std::max(length_up(best_.translation), enlarged(length(best_.translation)));
     answer.depth = {std::min(below, above), above};
-    answer.reached = above - answer.depth.lower <= std::max(options_.relative * above, min_width());
+    const bool narrow = above - answer.depth.lower <= std::max(options_.relative * above, min_width());
+    answer.outcome = outcome_of(narrow, budget_spent_ || splits_ >= max_splits());
     return answer;
   }
 
  private:
+  [[nodiscard]] std::uint64_t max_splits() const { return run_.max_splits.value_or(default_splits); }
+  void note(Outcome outcome) { budget_spent_ = budget_spent_ || outcome == Outcome::budget_spent; }
+  // For one query of the search.
+  [[nodiscard]] Run each() const { return {.monitor = &monitor_, .max_splits = max_splits()}; }
   // Of the exact difference of the poses' translations: its coordinates are each within a rounding of these.
   [[nodiscard]] double length_up(const Vector3& d) const {
     return enlarged(length((b_.pose.offset() + d) - b_.pose.offset()));
@@ -86,18 +90,19 @@ class PenetrationSearch {
   [[nodiscard]] bool separated(const Vector3& d) {
     monitor_.checkpoint();
     if (!is_finite(b_.pose.offset() + d)) return false;
-    const CollideOptions options{
-        .tolerance = 0, .budget = options_.budget, .prove_contact = false, .solid = true, .measure = false};
-    const Collision answer = collide(a_, moved(d), options, monitor_);
+    const CollideOptions options{.tolerance = 0, .prove_contact = false, .solid = true, .measure = false};
+    const Collision answer = collide(a_, moved(d), options, each());
     splits_ += answer.stats.splits;
+    note(answer.outcome);
     ++tried_;
     return answer.verdict == Verdict::separated;
   }
   // How far apart the surfaces are after a translation, to shares of its length and of the distance.
   [[nodiscard]] Distance gap_after(const Candidate& at, double share, double relative) {
-    return snug::distance(a_, moved(at.translation),
-                          {.absolute = share * at.length, .relative = relative, .budget = options_.budget},
-                          monitor_);
+    const Distance gap = snug::distance(a_, moved(at.translation),
+                                        {.absolute = share * at.length, .relative = relative}, each());
+    note(gap.outcome);
+    return gap;
   }
 
   void shorten() {
@@ -150,7 +155,7 @@ class PenetrationSearch {
   void descend(Candidate at) {
     for (int i = 0; i < max_descents; ++i) {
       const Distance gap = gap_after(at, 1e-3, 0.05);
-      const Vector3 n = normalized(gap.witness[1] - gap.witness[0]);
+      const Vector3 n = normalized(gap.witness[1].point - gap.witness[0].point);
       if (n == Vector3{}) return;
       const double along = dot(n, at.translation) - gap.distance.lower;
       const double before = at.length;
@@ -186,7 +191,7 @@ class PenetrationSearch {
                    [](const Candidate& x, const Candidate& y) { return x.length < y.length; });
     for (const Candidate& start : starts) shorten_by_steps(start, directions);
   }
-  [[nodiscard]] bool may_go_on() const { return tried_ < max_tried && splits_ < options_.budget; }
+  [[nodiscard]] bool may_go_on() const { return tried_ < max_tried && splits_ < max_splits(); }
 
   // To a translation that no step in any of the directions makes shorter.
   void shorten_by_steps(Candidate at, const std::vector<Vector3>& directions) {
@@ -204,7 +209,7 @@ class PenetrationSearch {
 
   // The sum of the radii of two balls around one point, each in one of the solids.
   double depth_at(const Point3& local) {
-    const ClosestOptions precision{.absolute = {}, .relative = 0.02, .budget = options_.budget};
+    const Precision precision{.absolute = {}, .relative = 0.02};
     const Point3 world = a_.pose.apply(local);
     const Motion back = b_.pose.inverse();
     const Point3 other = back.apply(world);
@@ -214,8 +219,8 @@ class PenetrationSearch {
                              max_abs(a_.pose.offset()) + max_abs(b_.pose.offset());
     const double off =
         spatial_error(max_abs(again - world) + 64 * unit_roundoff * magnitude + 8 * underflow_error);
-    const SignedDistance in_a = signed_distance(a_.scratch, local, precision, monitor_);
-    const SignedDistance in_b = signed_distance(b_.scratch, other, precision, monitor_);
+    const SignedDistance in_a = signed_distance(a_.scratch, local, precision, each());
+    const SignedDistance in_b = signed_distance(b_.scratch, other, precision, each());
     // A motion shrinks lengths by at most its defect.
     const double radius_a = -in_a.distance.upper * (1 - 2 * a_.pose.defect()),
                  radius_b = -in_b.distance.upper * (1 - 2 * b_.pose.defect()) - off;
@@ -265,16 +270,18 @@ class PenetrationSearch {
   std::vector<Point3> starts() {
     const Distance gap = gap_after(best_, 1e-2, 0.1);
     const Motion back = a_.pose.inverse();
-    const Point3 touch = gap.witness[0] - 0.5 * best_.translation;
+    const Point3 touch = gap.witness[0].point - 0.5 * best_.translation;
     return {back.apply(touch), back.apply(b_.pose.apply(b_.model.ball().centre)), a_.model.ball().centre};
   }
 
   const PlacedBvh &a_, &b_;
   const PenetrationOptions& options_;
+  Run run_;
   const WorkMonitor& monitor_;
   Candidate best_{{}, INFINITY};
   std::uint64_t splits_ = 0;  // of translations tried
   int tried_ = 0;
+  bool budget_spent_ = false;  // by one of the queries
   // For the last point of depth_at(): its depth in the shallower solid, negative outside;
   // from it to the surface of A, and to it from that of B.
   double guide_ = 0;
@@ -285,15 +292,15 @@ class PenetrationSearch {
 }  // namespace
 
 Penetration penetration(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
-                        const WorkMonitor& monitor) {
+                        const Run& run) {
   require_length(options.relative, "penetration: the precision");
-  return PenetrationSearch(a, b, options, monitor).run();
+  return PenetrationSearch(a, b, options, run).run();
 }
 
 Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,
-                        const WorkMonitor& monitor, Workspace& workspace) {
-  const PlacedPair at(a, b, workspace);
-  return penetration(at.a, at.b, options, monitor);
+                        const Run& run) {
+  const PlacedPair at(a, b, workspace_of(run));
+  return penetration(at.a, at.b, options, run);
 }
 
 }  // namespace snug

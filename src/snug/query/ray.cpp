@@ -13,9 +13,12 @@
 #include <support/direction.h>
 #include <support/error.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 20'000;
 
 // A rounding more or less on a number of some roundings.
 double lowered(double x) {
@@ -37,13 +40,17 @@ namespace {
 
 class RaySearch {
  public:
-  RaySearch(const LimitSurface& surface, const RayOptions& options) : surface_(surface), options_(options) {
-    const double precision = options.precision.value_or(share_of_size(1e-6, surface.size()));
+  RaySearch(const LimitSurface& surface, const RayOptions& options, const Run& run)
+      : surface_(surface),
+        options_(options),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)) {
+    const double precision = options.absolute.value_or(share_of_size(1e-6, surface.size()));
     require_length(precision, "the precision of rays");
     precision_ = surface.scale().apply(precision);
   }
 
-  RayHits ask(SurfaceWorkspace& workspace, const Ray& ray, const WorkMonitor& monitor) const {
+  [[nodiscard]] RayHits ask(SurfaceWorkspace& workspace, const Ray& ray) const {
     require_ray(ray);
     const PowerOfTwo scale = surface_.scale();
     const RayScale lengths(ray.direction, scale);
@@ -56,10 +63,13 @@ class RaySearch {
                        {ray.from == 0 ? 0 : raised(from), lowered(to)},
                        options_.query,
                        precision_,
-                       options_.budget};
-    const FoundHits found = walk_ray(workspace, task, monitor);
+                       max_splits_};
+    const FoundHits found = walk_ray(workspace, task, monitor_);
     RayHits answer;
-    answer.complete = found.complete;
+    bool narrow = true;
+    for (const FoundHit& hit : found.hits) narrow = narrow && (hit.reached || !hit.certified);
+    answer.outcome =
+        outcome_of(found.complete && (narrow || options_.query == RayQuery::any), !found.complete);
     answer.hits.reserve(found.hits.size());
     for (const FoundHit& hit : found.hits) answer.hits.push_back(finished(hit, task.ray, lengths));
     return answer;
@@ -71,53 +81,52 @@ class RaySearch {
     hit.t = {require_representable(lowered(lengths.to_parameter(found.along.lower))),
              require_representable(raised(lengths.to_parameter(found.along.upper)))};
     hit.certified = found.certified;
-    hit.reached = found.reached;
     hit.side = found.side;
     const double half = (found.along.upper - found.along.lower) / 2, middle = found.along.lower + half;
     const double rounding = 16 * unit_roundoff * (max_abs(ray.origin - Point3{}) + std::fabs(middle) + half);
     const BoundedPoint point = unscaled(
         BoundedPoint{ray.origin + middle * ray.along, enlarged(half) + rounding}, surface_.scale().inverse());
     hit.point = require_representable(point.position);
-    hit.point_error = require_representable(point.error);
+    hit.error = require_representable(point.error);
     hit.at = place_of(surface_, found.root, to_face(found.path, found.at));
-    hit.normal = evaluate(surface_, hit.at).normal;
+    hit.normal = evaluate(surface_, *hit.at).normal;
     return hit;
   }
 
   const LimitSurface& surface_;
   const RayOptions& options_;
+  const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   double precision_;
 };
 
 }  // namespace
 
-RayHits trace(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options,
-              const WorkMonitor& monitor) {
-  return RaySearch(workspace.model().surface(), options).ask(workspace, ray, monitor);
+RayHits ray(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options, const Run& run) {
+  return RaySearch(workspace.model().surface(), options, run).ask(workspace, ray);
 }
 
-std::vector<RayHits> trace(const SurfaceBvh& model, std::span<const Ray> rays, const RayOptions& options,
-                           int threads, const WorkMonitor& monitor) {
-  const RaySearch search(model.surface(), options);
+std::vector<RayHits> ray(const SurfaceBvh& model, std::span<const Ray> rays, const RayOptions& options,
+                         const Run& run) {
+  const RaySearch search(model.surface(), options, run);
   std::vector<RayHits> answers(rays.size());
   std::atomic<std::size_t> done{0};
   parallel_for_with(
-      rays.size(), threads, [&] { return SurfaceWorkspace(model); },
+      rays.size(), run.threads, [&] { return SurfaceWorkspace(model); },
       [&](SurfaceWorkspace& workspace, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) answers[i] = search.ask(workspace, rays[i], monitor);
-        monitor.report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
+        for (std::size_t i = begin; i < end; ++i) answers[i] = search.ask(workspace, rays[i]);
+        monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
       });
   return answers;
 }
 
-RayHits trace(const Surface& surface, const Ray& ray, const RayOptions& options, const WorkMonitor& monitor,
-              Workspace& workspace) {
-  return trace(workspace.pieces().of(surface), ray, options, monitor);
+RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
+  return snug::ray(workspace_of(run).pieces().of(surface), ray, options, run);
 }
 
-std::vector<RayHits> trace(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
-                           int threads, const WorkMonitor& monitor) {
-  return trace(surface.data()->bvh(), rays, options, threads, monitor);
+std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
+                         const Run& run) {
+  return ray(surface.data()->bvh(), rays, options, run);
 }
 
 }  // namespace snug

@@ -12,10 +12,9 @@ namespace snug {
 /// Throws InputError (value) unless these are a ray.
 void require_ray(const Ray& ray);
 
-[[nodiscard]] RayHits trace(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options,
-                            const WorkMonitor& monitor = {});
-[[nodiscard]] std::vector<RayHits> trace(const SurfaceBvh& model, std::span<const Ray> rays,
-                                         const RayOptions& options, int threads = 0,
-                                         const WorkMonitor& monitor = {});
+[[nodiscard]] RayHits ray(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options,
+                          const Run& run = {});
+[[nodiscard]] std::vector<RayHits> ray(const SurfaceBvh& model, std::span<const Ray> rays,
+                                       const RayOptions& options, const Run& run = {});
 
 }  // namespace snug

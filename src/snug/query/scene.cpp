@@ -12,10 +12,11 @@
 
 #include <snug/bvh/box_tree.h>
 #include <snug/search/placed_box.h>
-#include <snug/search/surface_data.h>
+#include <snug/search/workspace.h>
 #include <support/error.h>
 #include <support/in_order.h>
 #include <support/parallel.h>
+#include <support/run.h>
 #include <support/workers.h>
 
 namespace snug {
@@ -81,12 +82,12 @@ std::string names_of(const PartPair& pair) {
 }  // namespace
 
 struct SceneBroadPhase::State {
-  State(const Scene& in_scene, double in_margin, bool in_all, int in_threads, const WorkMonitor& in_monitor)
+  State(const Scene& in_scene, double in_margin, bool in_all, const Run& run)
       : scene(in_scene),
         margin(in_margin),
         all(in_all),
-        threads(in_threads),
-        monitor{.on_progress = {}, .stop = in_monitor.stop},
+        threads(run.threads),
+        monitor(stop_only(run)),
         margins(sorted_margins(in_scene)) {
     require_length(margin, "the margin of a scene");
     require_value(scene.parts.size() < UINT32_MAX, "a scene has fewer than 2^32 - 1 parts; take it apart");
@@ -189,9 +190,8 @@ struct SceneBroadPhase::State {
   std::size_t block = min_block;
 };
 
-SceneBroadPhase::SceneBroadPhase(const Scene& scene, double margin, bool all, int threads,
-                                 const WorkMonitor& monitor)
-    : state_(std::make_unique<State>(scene, margin, all, threads, monitor)) {}
+SceneBroadPhase::SceneBroadPhase(const Scene& scene, double margin, bool all, const Run& run)
+    : state_(std::make_unique<State>(scene, margin, all, run)) {}
 SceneBroadPhase::~SceneBroadPhase() = default;
 
 std::vector<ScenePair> SceneBroadPhase::next(std::size_t count) {
@@ -266,46 +266,44 @@ class KnownAnswers {
   std::array<std::optional<std::pair<Query, Answer>>, 64> places_;
 };
 
-auto query_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options) {
-  const auto& [tolerance, margin, budget, witness, prove_contact, solid, measure] = options;
-  return PairQuery(a, b, tolerance, margin, budget, witness, prove_contact, solid, measure);
+auto query_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options,
+              const std::optional<std::uint64_t>& max_splits) {
+  const auto& [tolerance, margin, witness, prove_contact, solid, measure] = options;
+  return PairQuery(a, b, max_splits, tolerance, margin, witness, prove_contact, solid, measure);
 }
 
 }  // namespace
 
-Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions options,
-                  const WorkMonitor& monitor, Workspace& workspace) {
+Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions options, const Run& run) {
   require_parts(pair.parts, scene.parts.size(), "the pair");
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   options.margin = pair.margin;
-  const auto query = query_of(a, b, options);
+  const auto query = query_of(a, b, options, run.max_splits);
   thread_local KnownAnswers<std::remove_const_t<decltype(query)>, Collision> known;
   if (const Collision* const answer = known.find(query)) return *answer;
-  const Collision answer =
-      naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, monitor, workspace); });
+  const Collision answer = naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, run); });
   // Answers from the root boxes are cheaper to compute again than to keep.
   if (answer.stats.box_tests > 0) known.keep(query, answer);
   return answer;
 }
 
 std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, const DistanceOptions& options,
-                                 const WorkMonitor& monitor, Workspace& workspace) {
+                                 const Run& run) {
   require_parts(pair.parts, scene.parts.size(), "the pair");
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
-  const auto& [absolute, relative, budget, solid] = options;
-  const PairQuery query(a, b, pair.margin, absolute, relative, budget, solid);
+  const auto& [absolute, relative, solid] = options;
+  const PairQuery query(a, b, pair.margin, run.max_splits, absolute, relative, solid);
   thread_local KnownAnswers<std::remove_const_t<decltype(query)>, Distance> known;
   if (const Distance* const answer = known.find(query)) return *answer;
   return naming_parts(names_of(pair.parts), [&]() -> std::optional<Distance> {
     // A verdict finds pairs beyond the limit sooner than a distance does.
     const CollideOptions beyond{.margin = pair.margin,
-                                .budget = options.budget,
                                 .witness = WitnessKind::none,
                                 .prove_contact = false,
                                 .solid = options.solid,
                                 .measure = false};
-    if (collide(a, b, beyond, monitor, workspace).verdict == Verdict::separated) return {};
-    Distance found = distance(a, b, options, monitor, workspace);
+    if (collide(a, b, beyond, run).verdict == Verdict::separated) return {};
+    Distance found = distance(a, b, options, run);
     if (found.distance.lower > pair.margin) return {};
     known.keep(query, found);
     return found;
@@ -316,9 +314,9 @@ namespace {
 
 // Answers every pair with ask(pair, workspace) and passes the answers to take(pair, answer) in order.
 template <class Answer, class Ask, class Take>
-std::uint64_t answer_pairs(SceneBroadPhase& pairs, int threads, const WorkMonitor& monitor, const Ask& ask,
-                           const Take& take) {
-  Workers<Workspace> workers(Workspace::of_this_thread(), threads);
+std::uint64_t answer_pairs(SceneBroadPhase& pairs, const Run& run, const Ask& ask, const Take& take) {
+  Workers<Workspace> workers(workspace_of(run), run.threads);
+  const WorkMonitor quiet = stop_only(run);
   std::uint64_t count = 0;
   for (double before = 0;; before = pairs.share()) {
     const std::vector<ScenePair> batch = pairs.next(pairs_of_a_batch);
@@ -327,8 +325,9 @@ std::uint64_t answer_pairs(SceneBroadPhase& pairs, int threads, const WorkMonito
     std::atomic<std::size_t> done{0};
     InOrder<Answer> answers(batch.size(), [&](std::size_t i, Answer& answer) { take(batch[i], answer); });
     workers.for_each(batch.size(), [&](Workspace& workspace, std::size_t i) {
-      report_part(monitor, before, pairs.share(), done++, batch.size());
-      answers.put(i, ask(batch[i], workspace));
+      report_part(monitor_of(run), before, pairs.share(), done++, batch.size());
+      answers.put(
+          i, ask(batch[i], Run{.monitor = &quiet, .workspace = &workspace, .max_splits = run.max_splits}));
     });
   }
 }
@@ -336,13 +335,11 @@ std::uint64_t answer_pairs(SceneBroadPhase& pairs, int threads, const WorkMonito
 }  // namespace
 
 SceneCounts collide(const Scene& scene, const CollideOptions& options,
-                    const std::function<void(const PairCollision&)>& sink, int threads,
-                    const WorkMonitor& monitor) {
-  SceneBroadPhase pairs(scene, options.margin, false, threads, monitor);
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+                    const std::function<void(const PairCollision&)>& sink, const Run& run) {
+  SceneBroadPhase pairs(scene, options.margin, false, run);
   SceneCounts counts;
-  const auto ask = [&](const ScenePair& pair, Workspace& workspace) {
-    return collide(scene, pair, options, stop_only, workspace);
+  const auto ask = [&](const ScenePair& pair, const Run& each) {
+    return collide(scene, pair, options, each);
   };
   const auto take = [&](const ScenePair& pair, Collision& answer) {
     const Verdict verdict = answer.verdict;
@@ -352,22 +349,20 @@ SceneCounts collide(const Scene& scene, const CollideOptions& options,
                                           : counts.undecided);
     sink({pair.parts, std::move(answer)});
   };
-  const std::uint64_t near = answer_pairs<Collision>(pairs, threads, monitor, ask, take);
+  const std::uint64_t near = answer_pairs<Collision>(pairs, run, ask, take);
   counts.pairs = pairs.pair_count();
   counts.separated_by_boxes = counts.pairs - near;
   return counts;
 }
 
 SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& options,
-                     const std::function<void(const PairDistance&)>& sink, int threads,
-                     const WorkMonitor& monitor) {
+                     const std::function<void(const PairDistance&)>& sink, const Run& run) {
   require_length(limit, "distance: the limit");
   const Scene bare{scene.parts, scene.pairs, {}};
-  SceneBroadPhase pairs(bare, limit, false, threads, monitor);
-  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  SceneBroadPhase pairs(bare, limit, false, run);
   SceneCounts counts;
-  const auto ask = [&](const ScenePair& pair, Workspace& workspace) {
-    return distance(bare, pair, options, stop_only, workspace);
+  const auto ask = [&](const ScenePair& pair, const Run& each) {
+    return distance(bare, pair, options, each);
   };
   const auto take = [&](const ScenePair& pair, std::optional<Distance>& answer) {
     if (!answer) {
@@ -377,7 +372,7 @@ SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& op
     ++(answer->distance.upper == 0 ? counts.intersecting : counts.within);
     sink({pair.parts, std::move(*answer)});
   };
-  const std::uint64_t near = answer_pairs<std::optional<Distance>>(pairs, threads, monitor, ask, take);
+  const std::uint64_t near = answer_pairs<std::optional<Distance>>(pairs, run, ask, take);
   counts.pairs = pairs.pair_count();
   counts.separated_by_boxes = counts.pairs - near;
   return counts;

@@ -1,5 +1,5 @@
 #include <snug/search/surface_data.h>
-#include <snug/self.h>
+#include <snug/self_contact.h>
 
 #include <algorithm>
 #include <limits>
@@ -19,9 +19,12 @@
 #include <support/error.h>
 #include <support/names.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 1'000'000;
 
 constexpr auto verdict_names = std::to_array<Named<SelfVerdict>>({{"clear", SelfVerdict::clear},
                                                                   {"intersecting", SelfVerdict::intersecting},
@@ -100,11 +103,16 @@ Found compare(SelfPieces& pieces, BoundsCache& library, const NamePair& whole, s
 
 class SelfSearch {
  public:
-  SelfSearch(const LimitSurface& surface, const SelfContactOptions& options, const WorkMonitor& monitor)
-      : surface_(surface), options_(options), monitor_(monitor), complex_(surface), budget_(options.budget) {
-    if (options.tolerance) {
+  SelfSearch(const LimitSurface& surface, const SelfContactOptions& options, const Run& run)
+      : surface_(surface),
+        options_(options),
+        run_(run),
+        monitor_(monitor_of(run)),
+        complex_(surface),
+        budget_(run.max_splits.value_or(default_splits)) {
+    if (options.within) {
       answer_.radius = options.radius.value_or(
-          std::min(default_radius * *options.tolerance, std::numeric_limits<double>::max()));
+          std::min(default_radius * *options.within, std::numeric_limits<double>::max()));
     }
   }
 
@@ -123,6 +131,7 @@ class SelfSearch {
       drop_proved(live, level);
       if (live.empty()) break;
       if (depth >= options_.levels || live.size() > budget_ || level + 1 >= LevelComplex::max_level) {
+        budget_spent_ = budget_spent_ || live.size() > budget_;
         for (const NamePair& pair : live) leave(pair);
         break;
       }
@@ -131,7 +140,7 @@ class SelfSearch {
       compare_far(far);
       answer_.levels = depth + 1;
     }
-    if (options_.tolerance && !crossing_) look_for_near();
+    if (options_.within && !crossing_) look_for_near();
     return result();
   }
 
@@ -139,24 +148,25 @@ class SelfSearch {
   void look_for_near() {
     // In scaled units all distances are below 16; a radius is 1e100 at most: only other components are so far.
     const PowerOfTwo scale = surface_.scale();
-    NearnessOptions wanted{.tolerance = std::min(enlarged(scale.apply(*options_.tolerance)), 64.0),
+    NearnessOptions wanted{.tolerance = std::min(enlarged(scale.apply(*options_.within)), 64.0),
                            .radius = std::min(scale.apply(answer_.radius), 1e100),
-                           .budget = options_.budget,
+                           .budget = run_.max_splits.value_or(default_splits),
                            .levels = options_.levels + further_levels,
-                           .threads = options_.threads};
-    if (scale.exact(*options_.tolerance)) wanted.tolerance = std::min(scale.apply(*options_.tolerance), 64.0);
+                           .threads = run_.threads};
+    if (scale.exact(*options_.within)) wanted.tolerance = std::min(scale.apply(*options_.within), 64.0);
     nearness_ = find_nearness(surface_, complex_, wanted, monitor_);
     answer_.stars += nearness_.stars;
     answer_.pair_tests += nearness_.pair_tests;
     answer_.levels = std::max(answer_.levels, nearness_.levels);
+    budget_spent_ = budget_spent_ || nearness_.budget_spent;
   }
 
   // All pairs of the first level whose enclosures are near and that have no corner in common.
   std::vector<NamePair> far_pairs(const std::vector<PieceName>& pieces) {
-    const std::vector<QuadraticTriangle> sets = enclosures_of(surface_, pieces, options_.threads, monitor_);
-    const QuadraticBvh tree(sets, options_.threads);
+    const std::vector<QuadraticTriangle> sets = enclosures_of(surface_, pieces, run_.threads, monitor_);
+    const QuadraticBvh tree(sets, run_.threads);
     std::vector<std::vector<NamePair>> found(pieces.size());
-    parallel_for(pieces.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(pieces.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor_.checkpoint();
         tree.for_each_near(sets[i], [&](std::uint32_t other) {
@@ -197,9 +207,12 @@ class SelfSearch {
       for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) corners.push_back(v);
     }
     MarkedVertices proved(std::move(corners));
-    if (proved.count() > budget_) return;
+    if (proved.count() > budget_) {
+      budget_spent_ = true;
+      return;
+    }
     for_each_with_pieces(
-        surface_, proved.count(), options_.threads, monitor_,
+        surface_, proved.count(), run_.threads, monitor_,
         [&](SelfPieces& pieces, std::size_t i) { proved.mark(i, star_holds(pieces, proved[i], level)); });
     spend(proved.count());
     answer_.stars += proved.count();
@@ -235,7 +248,7 @@ class SelfSearch {
     const std::uint64_t each = std::min(max_tests, budget_ / pairs.size());
     std::vector<Found> found(pairs.size());
     for_each_with_pieces(
-        surface_, pairs.size(), options_.threads, monitor_, [&](SelfPieces& kept, std::size_t i) {
+        surface_, pairs.size(), run_.threads, monitor_, [&](SelfPieces& kept, std::size_t i) {
           found[i] = compare(kept, surface_.library(), pairs[i], std::max<std::uint64_t>(each, 1));
         });
     for (const Found& one : found) {
@@ -243,6 +256,7 @@ class SelfSearch {
       spend(one.tests);
       if (one.what == Found::What::crossing) crossing_ = true;
       if (one.what != Found::What::apart) found_.push_back(one);
+      if (one.what == Found::What::unknown && each < max_tests && one.tests >= each) budget_spent_ = true;
     }
   }
 
@@ -267,6 +281,7 @@ class SelfSearch {
                       : !nearness_.near.empty()                        ? SelfVerdict::near
                       : found_.empty() && nearness_.unresolved.empty() ? SelfVerdict::clear
                                                                        : SelfVerdict::undecided;
+    answer_.outcome = outcome_of(answer_.verdict != SelfVerdict::undecided, budget_spent_);
     if (answer_.verdict != SelfVerdict::near) {
       for (const Found& found : found_) {
         if ((found.what == Found::What::crossing) == crossing_) add_place(found);
@@ -285,10 +300,9 @@ class SelfSearch {
                     const std::array<TriangleParameter, 2>& at) const {
     double error = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      pair.at[s] = place_of(surface_, PatchId(names[s].patch), to_face(names[s].path(), at[s]));
-      const SurfacePoint point = evaluate(surface_, pair.at[s]);
-      pair.points[s] = point.position;
-      error += spatial_error(point.error);
+      const Place place = place_of(surface_, PatchId(names[s].patch), to_face(names[s].path(), at[s]));
+      pair.points[s] = evaluate(surface_, place);
+      error += spatial_error(pair.points[s].error);
     }
     return error;
   }
@@ -299,8 +313,9 @@ class SelfSearch {
     pair.verdict = crossing_ ? SelfVerdict::intersecting : SelfVerdict::undecided;
     const double error = set_points(pair, {found.pieces.first, found.pieces.second}, found.at);
     if (!crossing_) {
-      const double apart = length(pair.points[1] - pair.points[0]);
-      pair.distance.upper = enlarged(apart + error + gamma_bound(4) * max_abs(pair.points[0] - Point3{}));
+      const double apart = length(pair.points[1].point - pair.points[0].point);
+      pair.distance.upper =
+          enlarged(apart + error + gamma_bound(4) * max_abs(pair.points[0].point - Point3{}));
     }
     answer_.pairs.push_back(pair);
   }
@@ -317,11 +332,12 @@ class SelfSearch {
 
   const LimitSurface& surface_;
   const SelfContactOptions& options_;
+  Run run_;
   const WorkMonitor& monitor_;
   LevelComplex complex_;
   std::uint64_t budget_;
   std::vector<Found> found_;
-  bool crossing_ = false;
+  bool crossing_ = false, budget_spent_ = false;
   Nearness nearness_;
   SelfContact answer_;
 };
@@ -330,23 +346,22 @@ class SelfSearch {
 
 const char* name_of(SelfVerdict verdict) { return name_in(verdict_names, verdict); }
 
-SelfContact self_contact(const Surface& surface, const SelfContactOptions& options,
-                         const WorkMonitor& monitor) {
-  require_value(options.levels <= 20, "self: more than 20 levels; give fewer");
-  if (options.tolerance) {
-    require_length(*options.tolerance, "self: the tolerance");
-    require_value(*options.tolerance > 0, "self: the tolerance is 0; give a positive length, or none");
+SelfContact self_contact(const Surface& surface, const SelfContactOptions& options, const Run& run) {
+  require_value(options.levels <= 20, "self contact: more than 20 levels; give fewer");
+  if (options.within) {
+    require_length(*options.within, "self contact: 'within'");
+    require_value(*options.within > 0, "self contact: 'within' is 0; give a positive length, or none");
   }
   if (options.radius) {
-    require_value(options.tolerance.has_value(),
-                  "self: a radius without a tolerance; give both, or no radius");
-    require_length(*options.radius, "self: the radius");
+    require_value(options.within.has_value(),
+                  "self contact: a radius without 'within'; give both, or no radius");
+    require_length(*options.radius, "self contact: the radius");
     require_value(
-        *options.radius / min_radius >= *options.tolerance,
-        "self: the radius is less than twice the tolerance, where even flat places are near each other "
+        *options.radius / min_radius >= *options.within,
+        "self contact: the radius is less than twice 'within', where even flat places are near each other "
         "beyond it; give a longer one");
   }
-  return SelfSearch(surface.data()->limit(), options, monitor).run();
+  return SelfSearch(surface.data()->limit(), options, run).run();
 }
 
 }  // namespace snug

@@ -268,6 +268,7 @@ class NearSearch {
       }
       if (!answer_.near.empty()) break;
       if (depth >= options_.levels || 16 * live.size() > budget_ || level + 1 >= LevelComplex::max_level) {
+        answer_.budget_spent = answer_.budget_spent || 16 * live.size() > budget_;
         leave(live);
         break;
       }
@@ -342,7 +343,10 @@ class NearSearch {
       for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) corners.push_back(v);
     }
     MarkedVertices short_ways(std::move(corners));
-    if (short_ways.count() > budget_) return;
+    if (short_ways.count() > budget_) {
+      answer_.budget_spent = true;
+      return;
+    }
     for_each_with_pieces(surface_, short_ways.count(), options_.threads, monitor_,
                          [&](SelfPieces& pieces, std::size_t i) {
                            const double stretch = stretch_of(pieces, short_ways[i], level);

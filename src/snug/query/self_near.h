@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <snug/geometry.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/surface/level_complex.h>
 
 namespace snug {
@@ -31,6 +31,7 @@ struct Nearness {
   std::vector<ProximityPair> unresolved;  ///< none if all others are proved not to be
   std::uint64_t stars = 0, pair_tests = 0;
   unsigned levels = 0;
+  bool budget_spent = false;  ///< a larger budget might leave fewer unresolved
 };
 
 /// Are places of a surface near each other that are far from each other along it?

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <snug/bounds/quadratic.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/search/piece.h>
 #include <snug/shape/star.h>
 #include <snug/surface/level_complex.h>

@@ -9,6 +9,7 @@
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
 #include <snug/surface/curve_set.h>
+#include <support/run.h>
 #include <support/scaling.h>
 
 namespace snug {
@@ -73,7 +74,7 @@ double face_count_after(const ControlMesh& mesh, const SchemeRules& rules, unsig
 }  // namespace
 
 ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned level, bool limit,
-                      const WorkMonitor& monitor) {
+                      const Run& run) {
   const SchemeOptions rules = with_tags(options, mesh.tags);
   require_subdividable(mesh, rules);
   if (mesh.tags.scheme) mesh.tags.scheme = rules.scheme;
@@ -98,20 +99,20 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
   Topology topology(mesh);
   Sharpness sharpness = primal ? sharpness_of(mesh, topology) : Sharpness{};
   for (unsigned step = 0; step < level; ++step) {
-    monitor.report(static_cast<double>(step) / (level + 1.0));
-    RefinedTopology refined = refine(topology, rules, sharpness, monitor);
-    mesh = refined_mesh(mesh, rules, topology, refined, monitor);
+    monitor_of(run).report(static_cast<double>(step) / (level + 1.0));
+    RefinedTopology refined = refine(topology, rules, sharpness, monitor_of(run));
+    mesh = refined_mesh(mesh, rules, topology, refined, monitor_of(run));
     topology = std::move(refined.topology);
     sharpness = std::move(refined.sharpness);
   }
-  monitor.checkpoint();
+  monitor_of(run).checkpoint();
   bool dropped = !primal && level > 0;
   if (limit) {
-    const Stencils rows = limit_stencils(topology, rules, sharpness, monitor);
+    const Stencils rows = limit_stencils(topology, rules, sharpness, monitor_of(run));
     std::vector<Point3> positions;
     positions.reserve(mesh.points.size());
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-      monitor.checkpoint();
+      monitor_of(run).checkpoint();
       positions.push_back(rows.apply<Point3>(v, mesh.points));
     }
     mesh.points = std::move(positions);
@@ -129,7 +130,7 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
 }
 
 ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsigned level, bool limit,
-                             const WorkMonitor& monitor) {
+                             const Run& run) {
   const CurveSet curves(mesh, degree);  // refuses what has no curves
   if (level > 30 || (2 * mesh.polyline_vertices.size() << level) > (std::size_t{1} << 31)) {
     throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of polylines with " +
@@ -139,7 +140,7 @@ ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsign
   const PowerOfTwo scale = curves.scale();
   ControlMesh result;
   for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
-    monitor.report(static_cast<double>(p) / static_cast<double>(mesh.polyline_count()));
+    monitor_of(run).report(static_cast<double>(p) / static_cast<double>(mesh.polyline_count()));
     ControlPolygon polygon = control_polygon(mesh, PolylineId(p));
     for (Point3& point : polygon.points) point = scale.apply(point);
     for (unsigned step = 0; step < level; ++step) polygon = refine(polygon, degree);
@@ -155,9 +156,8 @@ ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsign
   return result;
 }
 
-ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,
-                       const WorkMonitor& monitor) {
-  return subdivide(surface.mesh(), surface.data()->limit().options(), level, limit_positions, monitor);
+ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions, const Run& run) {
+  return subdivide(surface.mesh(), surface.data()->limit().options(), level, limit_positions, run);
 }
 
 }  // namespace snug

@@ -7,13 +7,14 @@
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <support/error.h>
+#include <support/run.h>
 
 namespace snug {
 
-Surface::Surface(ControlMesh mesh, const SurfaceOptions& options)
-    : data_(std::make_shared<const SurfaceData>(std::move(mesh), options)) {
+Surface::Surface(ControlMesh mesh, const SurfaceOptions& options, const Run& run)
+    : data_(std::make_shared<const SurfaceData>(std::move(mesh), options, run)) {
   if (!options.notes || options.scheme) return;
-  const std::string note = smoothing_note(data_->limit(), "scheme", {}, options.threads);
+  const std::string note = smoothing_note(data_->limit(), "scheme", {}, run.threads);
   if (!note.empty()) options.notes(note);
 }
 Surface::Surface(std::shared_ptr<const SurfaceData> data) noexcept : data_(std::move(data)) {}
@@ -31,19 +32,19 @@ std::size_t Surface::corner_count(std::uint32_t owner) const {
   const LimitSurface::PatchRange patches = data_->limit().patches_of(owner);
   return traits().triangular ? 1 : (patches.end - patches.begin) / 2;
 }
-bool Surface::has(const SurfaceParameter& at) const { return patch_at(data_->limit(), at).has_value(); }
+bool Surface::has(const Place& at) const { return patch_at(data_->limit(), at).has_value(); }
 std::size_t Surface::kind_count() const { return data_->limit().kind_count(); }
 std::optional<std::string> Surface::open_reason() const { return snug::open_reason(data_->limit()); }
-void Surface::prepare(const WorkMonitor& monitor) const { static_cast<void>(data_->bvh(monitor)); }
+void Surface::prepare(const Run& run) const { static_cast<void>(data_->bvh(monitor_of(run))); }
 double Surface::size() const { return data_->limit().size(); }
 std::size_t Surface::bytes() const { return data_->bytes(); }
 
-Surface load(const std::string& path, const SurfaceOptions& options) {
-  ControlMesh mesh = read_mesh(path, {.weld = {}, .notes = options.notes, .monitor = options.monitor});
+Surface load(const std::string& path, const SurfaceOptions& options, const Run& run) {
+  ControlMesh mesh = read_mesh(path, {.weld = {}, .notes = options.notes}, run);
   SurfaceOptions named = options;
   if (options.notes) named.notes = [&](const std::string& line) { options.notes(path + ": " + line); };
   try {
-    return Surface(std::move(mesh), named);
+    return Surface(std::move(mesh), named, run);
   } catch (const InputError& error) {
     throw InputError(error.problem(), path + ": " + error.what());
   }

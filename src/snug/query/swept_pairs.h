@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include <snug/monitor.h>
 #include <snug/query/swept_motion.h>
+#include <snug/run.h>
 #include <snug/search/pair_walk.h>
 
 namespace snug {

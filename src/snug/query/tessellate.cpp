@@ -18,9 +18,12 @@
 #include <support/contract.h>
 #include <support/error.h>
 #include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 5'000'000;
 
 using Index = TriangleComplex::Index;
 
@@ -102,7 +105,7 @@ class Worker {
   }
 
   BoundingPoints hull;
-  std::array<SurfaceParameter, 64> at;
+  std::array<Place, 64> at;
   std::array<BoundedPoint, 64> points;
 
  private:
@@ -118,11 +121,12 @@ class Worker {
 class MeshRefinement {
  public:
   MeshRefinement(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
-                 const WorkMonitor& monitor)
+                 const Run& run)
       : surface_(surface),
         options_(options),
         limits_(limits),
-        monitor_(monitor),
+        run_(run),
+        monitor_(monitor_of(run)),
         back_(surface.scale().inverse()),
         complex_(surface),
         vertices_(complex_.vertex_count()) {}
@@ -173,6 +177,7 @@ class MeshRefinement {
   const LimitSurface& surface_;
   const TessellateOptions& options_;
   Limits limits_;
+  Run run_;
   const WorkMonitor& monitor_;
   PowerOfTwo back_;
   TriangleComplex complex_;
@@ -225,7 +230,7 @@ void MeshRefinement::finish(Vertex& vertex, const BoundedPoint& point) const {
 
 void MeshRefinement::evaluate(std::size_t begin, std::size_t end) {
   parallel_for_with(
-      end - begin, options_.threads, [&] { return Worker(surface_); },
+      end - begin, run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t from, std::size_t to) {
         monitor_.checkpoint();
         for (std::size_t i = begin + from; i < begin + to;) {
@@ -364,7 +369,7 @@ void MeshRefinement::examine(Worker& worker, Index t, bool mark) {
 
 void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
   parallel_for_with(
-      triangles.size(), options_.threads, [&] { return Worker(surface_); },
+      triangles.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (i % 256 == 0) monitor_.checkpoint();
@@ -489,7 +494,7 @@ void MeshRefinement::split(std::vector<Index>& parts) {
   });
   evaluate(old, vertices_.size());
   const std::vector<Cut> cuts = plan_cuts();
-  parallel_for(cuts.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for(cuts.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) carry_out(cuts[i]);
   });
   parts.clear();
@@ -544,8 +549,7 @@ void MeshRefinement::refuse_if_stuck() const {
   }
   char text[160];
   std::snprintf(
-      text, sizeof text,
-      "tessellate: rounding leaves more than the tolerance on this mesh; take %.3g or more",
+      text, sizeof text, "tessellate: rounding leaves more than the error on this mesh; take %.3g or more",
       4 * unscaled_up(std::max(largest, std::min(limits_.tolerance, limits_.max_thickness)), back_));
   refuse_value(text);
 }
@@ -553,7 +557,7 @@ void MeshRefinement::refuse_if_stuck() const {
 void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>& order) const {
   result.normals.resize(order.size());
   parallel_for_with(
-      order.size(), options_.threads, [&] { return Worker(surface_); },
+      order.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         monitor_.checkpoint();
         for (std::size_t i = begin; i < end; ++i) {
@@ -612,10 +616,10 @@ void require_positive(const std::optional<double>& value, const char* message) {
 }
 
 Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) {
-  require_value(options.tolerance || options.max_edge || options.max_angle || options.max_triangles ||
+  require_value(options.error || options.max_edge || options.max_angle || options.max_triangles ||
                     options.view || options.max_thickness,
-                "tessellate: give a tolerance, or what else the triangles are to hold");
-  require_positive(options.tolerance, "tessellate: the tolerance must be finite and positive");
+                "tessellate: give error, max_edge, max_angle, max_triangles, view or max_thickness");
+  require_positive(options.error, "tessellate: the error must be finite and positive");
   require_positive(options.max_edge, "tessellate: the longest edge must be finite and positive");
   require_positive(options.max_thickness, "tessellate: the thickness must be finite and positive");
   require_value(!options.max_angle || (*options.max_angle > 0 && *options.max_angle <= 180),
@@ -639,7 +643,7 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
     return result;
   };
   Limits limits;
-  limits.tolerance = scaled(options.tolerance, "a tolerance");
+  limits.tolerance = scaled(options.error, "an error");
   limits.max_edge = scaled(options.max_edge, "a longest edge");
   limits.max_thickness = scaled(options.max_thickness, "a thickness");
   if (options.view) {
@@ -660,12 +664,14 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
 class CountSearch {
  public:
   CountSearch(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
-              const WorkMonitor& monitor)
+              const Run& run)
       : surface_(surface),
         options_(options),
         limits_(limits),
-        monitor_(monitor),
-        max_triangles_(std::min(*options.max_triangles, options.budget)) {}
+        run_(run),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)),
+        max_triangles_(std::min(*options.max_triangles, max_splits_)) {}
 
   Tessellation run() {
     const double wanted = limits_.tolerance;
@@ -685,7 +691,7 @@ class CountSearch {
         low = next;
       }
     }
-    const bool spent = options_.budget < *options_.max_triangles && high > least();
+    const bool spent = max_splits_ < *options_.max_triangles && high > least();
     return finished(!std::isfinite(wanted) && !spent);
   }
 
@@ -696,8 +702,8 @@ class CountSearch {
   // Keeps the best.
   bool attempt(double tolerance) {
     limits_.tolerance = tolerance;
-    const WorkMonitor quiet{{}, monitor_.stop};
-    MeshRefinement refinement(surface_, options_, limits_, quiet);
+    const WorkMonitor quiet = stop_only(run_);
+    MeshRefinement refinement(surface_, options_, limits_, {.threads = run_.threads, .monitor = &quiet});
     if (!refinement.run(max_triangles_) || refinement.triangle_count() > max_triangles_) return false;
     const double error = surface_.scale().apply(refinement.error_bound());
     if (!best_ || error < error_) {
@@ -708,25 +714,25 @@ class CountSearch {
     return true;
   }
   Tessellation finished(bool reached) {
-    best_->reached = reached;
+    best_->outcome = outcome_of(reached, true);
     return std::move(*best_);
   }
   // Names the number that is enough, if the budget allows to find it.
   [[noreturn]] void refuse_number() {
     limits_.tolerance = INFINITY;
-    MeshRefinement refinement(surface_, options_, limits_, monitor_);
-    const bool known = refinement.run(options_.budget);
+    MeshRefinement refinement(surface_, options_, limits_, run_);
+    const bool known = refinement.run(max_splits_);
     const std::uint64_t needed = refinement.triangle_count();
     std::string text = "tessellate: ";
     text += known && needed <= *options_.max_triangles
-                ? "a budget of " + std::to_string(options_.budget) + " triangles is too small"
+                ? "a budget of " + std::to_string(max_splits_) + " triangles is too small"
                 : std::to_string(*options_.max_triangles) + " triangles are too few";
     text += " for this mesh and what else is asked for; ";
     if (known) {
       text += "take " + std::to_string(needed) + " or more";
-      if (options_.budget < needed && needed > *options_.max_triangles) text += ", with a budget as large";
+      if (max_splits_ < needed && needed > *options_.max_triangles) text += ", with a budget as large";
     } else {
-      text += "so is the budget of " + std::to_string(options_.budget) +
+      text += "so is the budget of " + std::to_string(max_splits_) +
               "; give more of both, or longer edges, larger angles and thicknesses";
     }
     refuse_value(text.c_str());
@@ -735,7 +741,9 @@ class CountSearch {
   const LimitSurface& surface_;
   const TessellateOptions& options_;
   Limits limits_;
+  Run run_;
   const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   std::uint64_t max_triangles_;  // triangles of an attempt
   std::optional<Tessellation> best_;
   double error_ = INFINITY;  // of the best, in scaled units
@@ -744,36 +752,34 @@ class CountSearch {
 
 }  // namespace
 
-Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options,
-                        const WorkMonitor& monitor) {
+Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options, const Run& run) {
   const Limits limits = limits_of(surface, options);
-  if (options.max_triangles) return CountSearch(surface, options, limits, monitor).run();
-  MeshRefinement refinement(surface, options, limits, monitor);
-  const bool reached = refinement.run(options.budget);
+  if (options.max_triangles) return CountSearch(surface, options, limits, run).run();
+  MeshRefinement refinement(surface, options, limits, run);
+  const bool reached = refinement.run(run.max_splits.value_or(default_splits));
   Tessellation result = refinement.result();
-  result.reached = reached;
+  result.outcome = outcome_of(reached, true);
   return result;
 }
 
 LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
-                             const TessellateOptions& options, const WorkMonitor& monitor) {
+                             const TessellateOptions& options, const Run& run) {
   Limits limits;
   limits.of_owner.reserve(tolerances.size());
   for (const double tolerance : tolerances) {
     limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), min_tolerance));
   }
   limits.tolerance = *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
-  MeshRefinement refinement(surface, options, limits, monitor);
-  const bool reached = refinement.run(options.budget);
+  MeshRefinement refinement(surface, options, limits, run);
+  const bool reached = refinement.run(run.max_splits.value_or(default_splits));
   LocalTessellation result;
   result.mesh = refinement.result(&result.errors);
-  result.mesh.reached = reached;
+  result.mesh.outcome = outcome_of(reached, true);
   return result;
 }
 
-Tessellation tessellate(const Surface& surface, const TessellateOptions& options,
-                        const WorkMonitor& monitor) {
-  return tessellate(surface.data()->limit(), options, monitor);
+Tessellation tessellate(const Surface& surface, const TessellateOptions& options, const Run& run) {
+  return tessellate(surface.data()->limit(), options, run);
 }
 
 }  // namespace snug

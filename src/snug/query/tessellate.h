@@ -10,15 +10,15 @@ namespace snug {
 
 /// tessellate() of tessellate.h.
 [[nodiscard]] Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options,
-                                      const WorkMonitor& monitor = {});
+                                      const Run& run = {});
 
 /// Of a refinement with tolerances of its own for each owner, in mesh units: also a proved error for each triangle.
 struct LocalTessellation {
   Tessellation mesh;
   std::vector<double> errors;
 };
-/// Requires:  finite, positive tolerances, one an owner; none of `options` counts but budget and threads.
+/// Requires:  finite, positive tolerances, one an owner; none of `options` counts.
 [[nodiscard]] LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
-                                           const TessellateOptions& options, const WorkMonitor& monitor = {});
+                                           const TessellateOptions& options, const Run& run = {});
 
 }  // namespace snug

@@ -13,9 +13,12 @@
 #include <snug/search/solid.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
+
+constexpr std::uint64_t default_splits = 1'000'000;
 
 // Precision of distances: of the distance, and of the tolerance.
 constexpr double relative = 0.25, share_of_tolerance = 0.125;
@@ -52,10 +55,11 @@ struct Look {
 class FirstContactSearch {
  public:
   FirstContactSearch(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
-                     const WorkMonitor& monitor)
+                     const Run& run)
       : body_{MovingBody(a), MovingBody(b)},
         options_(options),
-        monitor_(monitor),
+        monitor_(monitor_of(run)),
+        max_splits_(run.max_splits.value_or(default_splits)),
         tolerance_(*options.tolerance),
         size_(share_of_size(1, a.model.surface().size(), b.model.surface().size())),
         duration_(std::max(body_[0].duration(), body_[1].duration())) {
@@ -155,8 +159,10 @@ class FirstContactSearch {
     spent_ += cost_of_look;
   }
   // Of the budget.
-  [[nodiscard]] std::uint64_t left() const { return spent_ < options_.budget ? options_.budget - spent_ : 0; }
-  [[nodiscard]] std::uint64_t for_look() const { return std::min(left(), options_.budget / looks_of_budget); }
+  [[nodiscard]] std::uint64_t left() const { return spent_ < max_splits_ ? max_splits_ - spent_ : 0; }
+  [[nodiscard]] Run for_look() const {
+    return {.monitor = &monitor_, .max_splits = std::min(left(), max_splits_ / looks_of_budget)};
+  }
 
   // Is the surfaces' distance at that time enough for all that is left of the piece?
   [[nodiscard]] bool far_enough(const Places& at, double time, double end, Look& look) const {
@@ -172,8 +178,8 @@ class FirstContactSearch {
     const Places at = places_at(time);
     Look look{.time = time};
     if (far_enough(at, time, end, look)) return look;
-    const DistanceOptions wanted{.absolute = resolution_, .relative = relative, .budget = for_look()};
-    const Distance found = distance(at.a, at.b, wanted, monitor_);
+    const DistanceOptions wanted{.absolute = resolution_, .relative = relative};
+    const Distance found = distance(at.a, at.b, wanted, for_look());
     count(found.stats);
     look.crossing = found.distance.upper == 0;
     look.lower = std::max(0.0, rounded_down(found.distance.lower - at.doubt()));
@@ -187,9 +193,8 @@ class FirstContactSearch {
     monitor_.checkpoint();
     count_look();
     const Places at = places_at(time);
-    const CollideOptions wanted{
-        .tolerance = 0, .budget = for_look(), .witness = WitnessKind::none, .measure = false};
-    const Collision found = collide(at.a, at.b, wanted, monitor_);
+    const CollideOptions wanted{.tolerance = 0, .witness = WitnessKind::none, .measure = false};
+    const Collision found = collide(at.a, at.b, wanted, for_look());
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
     if (enlarged(found.distance.upper + at.doubt()) <= tolerance_) within_ = std::min(within_, time);
@@ -402,7 +407,7 @@ class FirstContactSearch {
   TimeOfContact result() {
     resolve_nesting();
     TimeOfContact answer;
-    answer.looks = looks_;
+    answer.steps = looks_;
     if (crossing_ < INFINITY) {
       answer.verdict = Verdict::intersecting;
       answer.time = {std::min(lower_, crossing_), crossing_};
@@ -412,11 +417,10 @@ class FirstContactSearch {
     } else {
       answer.verdict = over_ ? Verdict::separated : Verdict::undecided;
       answer.time = {over_ ? duration_ : lower_, INFINITY};
-      answer.reached = over_;
-      answer.budget_ended = !over_ && left() == 0;
+      answer.outcome = outcome_of(over_, left() == 0);
     }
     if (answer.time.upper < INFINITY) {
-      answer.reached = short_enough(answer.time.lower, answer.time.upper);
+      answer.outcome = outcome_of(short_enough(answer.time.lower, answer.time.upper), left() == 0);
       set_witness(answer);
     }
     answer.stats = stats_;
@@ -428,25 +432,21 @@ class FirstContactSearch {
     if (answer.time.upper < first_) place_in_piece(static_cast<std::size_t>(answer.time.upper));
     const Places at = places_at(answer.time.upper);
     if (options_.solid && inside_.inner) {
-      answer.witness = {inside_.point.position, inside_.point.position};
-      answer.witness_error = inside_.point.error;
-      answer.at[*inside_.inner] = inside_.at;
-      answer.inner = inside_.inner;
+      answer.witness = inside_.witness();
+      answer.contained = inside_.inner;
       return;
     }
-    const Distance found =
-        distance(at.a, at.b,
-                 {.absolute = resolution_, .relative = relative, .budget = options_.budget / looks_of_budget},
-                 monitor_);
+    const Distance found = distance(at.a, at.b, {.absolute = resolution_, .relative = relative},
+                                    {.monitor = &monitor_, .max_splits = max_splits_ / looks_of_budget});
     count(found.stats);
     answer.witness = found.witness;
-    answer.witness_error = enlarged(found.witness_error + at.doubt());
-    answer.at = found.at;
+    for (LimitPoint& point : *answer.witness) point.error = enlarged(point.error + at.doubt());
   }
 
   std::array<MovingBody, 2> body_;
   const TimeOfContactOptions& options_;
   const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
   double tolerance_, size_, duration_;
   double first_ = 0;  // time at which the piece begins
   // Upper bound, of any two points against each other that may be in one place from lower_ on.
@@ -478,7 +478,7 @@ class FirstContactSearch {
 }  // namespace
 
 TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
-                              const WorkMonitor& monitor) {
+                              const Run& run) {
   TimeOfContactOptions wanted = options;
   if (!wanted.tolerance) {
     wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
@@ -494,22 +494,21 @@ TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const Time
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
   }
-  return FirstContactSearch(a, b, wanted, monitor).run();
+  return FirstContactSearch(a, b, wanted, run).run();
 }
 
 TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a, const Surface& b,
                               const Trajectory& motion_b, const TimeOfContactOptions& options,
-                              const WorkMonitor& monitor, Workspace& workspace) {
-  return time_of_contact({a, {}, motion_a}, {b, {}, motion_b}, options, monitor, workspace);
+                              const Run& run) {
+  return time_of_contact({a, {}, motion_a}, {b, {}, motion_b}, options, run);
 }
 
 TimeOfContact time_of_contact(const DeformingSurface& a, const DeformingSurface& b,
-                              const TimeOfContactOptions& options, const WorkMonitor& monitor,
-                              Workspace& workspace) {
-  const Workspace::Pieces::Pair pieces = workspace.pieces().of(a.surface, b.surface);
+                              const TimeOfContactOptions& options, const Run& run) {
+  const Workspace::Pieces::Pair pieces = workspace_of(run).pieces().of(a.surface, b.surface);
   const MovingBvh moving_a{pieces.a.model(), pieces.a, a.motion, a.end},
       moving_b{pieces.b.model(), pieces.b, b.motion, b.end};
-  return time_of_contact(moving_a, moving_b, options, monitor);
+  return time_of_contact(moving_a, moving_b, options, run);
 }
 
 }  // namespace snug

@@ -3,7 +3,7 @@
 #include <array>
 
 #include <snug/mesh/topology.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
 #include <snug/scheme/stencils.h>

@@ -7,7 +7,7 @@
 
 #include <snug/geometry/interval.h>
 #include <snug/mesh/topology.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <support/point.h>
 
 namespace snug {

@@ -235,13 +235,13 @@ Vector3 PlacedPiece::at(TriangleParameter at) const {
 namespace {
 
 // (t, u, v): along an edge of one piece, and on the other piece.
-struct Place {
+struct CurvePlace {
   double t, u, v;
 };
-double max_abs(const Place& p) { return std::max({std::fabs(p.t), std::fabs(p.u), std::fabs(p.v)}); }
+double max_abs(const CurvePlace& p) { return std::max({std::fabs(p.t), std::fabs(p.u), std::fabs(p.v)}); }
 
-Place clamped(const Place& p) {
-  Place result{std::clamp(p.t, 0.0, 1.0), std::max(p.u, 0.0), std::max(p.v, 0.0)};
+CurvePlace clamped(const CurvePlace& p) {
+  CurvePlace result{std::clamp(p.t, 0.0, 1.0), std::max(p.u, 0.0), std::max(p.v, 0.0)};
   if (const double excess = (result.u + result.v - 1) / 2; excess > 0) {
     result.u = std::clamp(result.u - excess, 0.0, 1.0);
     result.v = std::max(0.0, 1 - result.u - 0x1p-52);
@@ -249,11 +249,11 @@ Place clamped(const Place& p) {
   return result;
 }
 // The ends of a path that was computed may be off the border by some roundings.
-bool outside(const Place& p, double radius) {
+bool outside(const CurvePlace& p, double radius) {
   return p.t < -radius - 0x1p-45 || p.t > 1 + radius + 0x1p-45 || p.u < -radius || p.v < -radius ||
          p.u + p.v > 1 + 2 * radius + 0x1p-50;
 }
-bool inside(const Place& p, double radius) {
+bool inside(const CurvePlace& p, double radius) {
   return p.t > radius && p.t < 1 - radius && p.u > radius && p.v > radius &&
          p.u + p.v < 1 - 2 * radius - 0x1p-50;
 }
@@ -288,17 +288,17 @@ class PathAgainstPiece {
   };
   struct Found {
     State state = State::unsure;
-    Place at{};
+    CurvePlace at{};
     double doubt = 0;  // a zero is no farther from there
   };
   [[nodiscard]] Found find() const {
     if (!(contraction_ < max_contraction)) return {};
     Found found;
-    Place x{0.5, 1.0 / 3, 1.0 / 3};
+    CurvePlace x{0.5, 1.0 / 3, 1.0 / 3};
     double far = 2.0 / 3 * safely;  // a zero is no farther from x
     for (unsigned i = 0; i < max_steps; ++i) {
       const auto [step, blur] = step_at(x);
-      const Place next{x.t - step.t, x.u - step.u, x.v - step.v};
+      const CurvePlace next{x.t - step.t, x.u - step.u, x.v - step.v};
       const double size = max_abs(step), ball = safely * (size + blur) / (1 - contraction_);
       if (!(ball < INFINITY)) break;
       if (inside(x, ball) && (found.state == State::unsure || ball < found.doubt)) {
@@ -308,7 +308,7 @@ class PathAgainstPiece {
       const double radius = safely * (contraction_ * far + blur) + 0x1p-50 * (1 + size);
       if (found.state == State::unsure && outside(next, radius)) return {.state = State::none};
       x = clamped(next);
-      const double moved = max_abs(Place{next.t - x.t, next.u - x.u, next.v - x.v});
+      const double moved = max_abs(CurvePlace{next.t - x.t, next.u - x.u, next.v - x.v});
       far = std::min(safely * (radius + moved), 1.0);
       if (found.state == State::unsure && far <= safely * 8 * (blur + 0x1p-50) / (1 - contraction_)) {
         return {State::border, x, far};
@@ -334,10 +334,10 @@ class PathAgainstPiece {
 
  private:
   struct Step {
-    Place by;
+    CurvePlace by;
     double blur;  // upper bound of what each coordinate is off
   };
-  [[nodiscard]] Step step_at(const Place& x) const {
+  [[nodiscard]] Step step_at(const CurvePlace& x) const {
     const Vector3 p = from_.at(path_.at(x.t)), q = piece_.at({x.u, x.v});
     const Vector3 gap = origins_ + (p - q);
     const double error =

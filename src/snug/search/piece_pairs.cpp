@@ -233,15 +233,18 @@ Witness PiecePairs::approximate_witness(const PiecePair& pieces) {
           .at = pieces.at};
 }
 
-WitnessPlaces PiecePairs::places(const Witness& witness) const {
-  WitnessPlaces places;
+WitnessPoints PiecePairs::limit_points(const Witness& witness) const {
+  const PowerOfTwo back = frames_.to_mesh_units();
+  WitnessPoints points;
   for (std::size_t s = 0; s < 2; ++s) {
     SurfaceWorkspace& workspace = frames_.workspace(s);
     const Patch& patch = workspace.patch(witness.nodes[s]);
-    places[s] = place_of(workspace.model().surface(), workspace.root_of(witness.nodes[s]),
-                         to_face(patch.path, witness.at[s]));
+    points[s] = {require_representable(back.apply(witness.points[s])),
+                 unscaled_up(witness.error, back) + underflow_error,
+                 place_of(workspace.model().surface(), workspace.root_of(witness.nodes[s]),
+                          to_face(patch.path, witness.at[s]))};
   }
-  return places;
+  return points;
 }
 
 }  // namespace snug

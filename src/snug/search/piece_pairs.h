@@ -78,11 +78,7 @@ class PiecePairs {
   /// Writes a witness of this query to a Collision or a Distance, in mesh units.
   template <class Answer>
   void write_to(const Witness& witness, Answer& answer) const {
-    const PowerOfTwo back = frames_.to_mesh_units();
-    answer.witness = {require_representable(back.apply(witness.points[0])),
-                      require_representable(back.apply(witness.points[1]))};
-    answer.witness_error = unscaled_up(witness.error, back) + underflow_error;
-    answer.at = places(witness);
+    answer.witness = limit_points(witness);
   }
 
  private:
@@ -90,8 +86,7 @@ class PiecePairs {
   [[nodiscard]] Point3 quadratic_point(const PiecePair& pieces, std::size_t side, TriangleParameter at) const;
   // Takes points of the quadratics at pieces.at.
   void set_points(PiecePair& pieces) const;
-  // Where its points lie.
-  [[nodiscard]] WitnessPlaces places(const Witness& witness) const;
+  [[nodiscard]] WitnessPoints limit_points(const Witness& witness) const;
   // An upper bound of w . x in a piece, placed, for |w| <= 1 up to a few roundings.
   [[nodiscard]] double placed_extent(std::size_t side, const Node& node, const Vector3& w) const;
 

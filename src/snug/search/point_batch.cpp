@@ -18,15 +18,15 @@ std::uint32_t spread(std::uint32_t bits) {
   return (bits | bits << 2) & 0x09249249u;
 }
 
-struct Place {
+struct OrderedPoint {
   std::uint32_t along, point;
 };
 
 // The points in the order of the curve.
-std::vector<Place> spatial_order(std::span<const Point3> points) {
+std::vector<OrderedPoint> spatial_order(std::span<const Point3> points) {
   Box3 box;
   for (const Point3& p : points) box.add(p);
-  std::vector<Place> places;
+  std::vector<OrderedPoint> places;
   places.reserve(points.size());
   for (const Point3& p : points) {
     std::uint32_t code = 0;
@@ -37,7 +37,7 @@ std::vector<Place> spatial_order(std::span<const Point3> points) {
     }
     places.push_back({code, static_cast<std::uint32_t>(places.size())});
   }
-  std::sort(places.begin(), places.end(), [](const Place& x, const Place& y) {
+  std::sort(places.begin(), places.end(), [](const OrderedPoint& x, const OrderedPoint& y) {
     return x.along != y.along ? x.along < y.along : x.point < y.point;
   });
   return places;
@@ -48,12 +48,12 @@ std::vector<Place> spatial_order(std::span<const Point3> points) {
 void for_each_point(const SurfaceBvh& model, std::span<const Point3> points, int threads,
                     const WorkMonitor& monitor,
                     const std::function<void(SurfaceWorkspace&, std::size_t)>& ask) {
-  const std::vector<Place> order = spatial_order(points);
+  const std::vector<OrderedPoint> order = spatial_order(points);
   std::atomic<std::size_t> done{0};
   parallel_for_with(
       points.size(), threads, [&] { return SurfaceWorkspace(model); },
       [&](SurfaceWorkspace& scratch, std::size_t begin, std::size_t end) {
-        for (const Place& place : std::span(order).subspan(begin, end - begin)) {
+        for (const OrderedPoint& place : std::span(order).subspan(begin, end - begin)) {
           ask(scratch, place.point);
           const std::size_t count = ++done;
           if (count % (1 + points.size() / 1000) == 0) {

@@ -16,7 +16,7 @@ namespace snug {
   return std::min(share * std::max(size_a, size_b), std::numeric_limits<double>::max());
 }
 
-/// Options of a distance with both precisions given, as DistanceOptions says.
+/// A precision, or options that hold one, with both parts given, as Precision says.
 /// Errors:    InputError (value) unless both are finite and >= 0.
 template <class Options>
 [[nodiscard]] Options with_precision(Options options, double size_a, double size_b = 0) {

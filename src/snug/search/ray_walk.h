@@ -33,7 +33,7 @@ struct FoundHits {
   bool complete = true;
 };
 
-/// The hits of a ray: trace() of ray.h.
+/// The hits of a ray: ray() of ray.h.
 ///
 /// Pieces that the line misses are dropped, others split, the nearest first. A piece that its line certainly
 /// crosses is a hit by itself. Where a line comes too near to the border of a piece, all pieces near the line are

@@ -7,7 +7,7 @@
 
 #include <snug/bvh/carried_axes.h>
 #include <snug/bvh/wide_bvh.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/surface/control_nets.h>
 
 namespace snug {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <support/point.h>
 
 namespace snug {

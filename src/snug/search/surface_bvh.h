@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <snug/bvh/wide_bvh.h>
-#include <snug/monitor.h>
+#include <snug/run.h>
 #include <snug/search/piece_leaf.h>
 #include <snug/search/refit_plan.h>
 #include <snug/search/solid.h>

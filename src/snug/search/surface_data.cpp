@@ -1,4 +1,5 @@
 #include <snug/search/surface_data.h>
+#include <support/run.h>
 
 #include <atomic>
 #include <mutex>
@@ -20,9 +21,9 @@ std::shared_ptr<BoundsCache> shared_bounds() {
   return cache;
 }
 
-LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options) {
+LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options, const Run& run) {
   const SchemeOptions rules = rules_for(mesh, options.scheme, options.boundary);
-  return {std::move(mesh), rules, shared_bounds(), options.monitor};
+  return {std::move(mesh), rules, shared_bounds(), monitor_of(run)};
 }
 
 std::uint64_t next_number() {
@@ -32,9 +33,9 @@ std::uint64_t next_number() {
 
 }  // namespace
 
-SurfaceData::SurfaceData(ControlMesh mesh, const SurfaceOptions& options)
-    : limit_(make_surface(std::move(mesh), options)),
-      bvh_options_{.method = options.bounds, .tight = options.tight, .threads = options.threads},
+SurfaceData::SurfaceData(ControlMesh mesh, const SurfaceOptions& options, const Run& run)
+    : limit_(make_surface(std::move(mesh), options, run)),
+      bvh_options_{.method = options.bounds, .tight = options.tight, .threads = run.threads},
       number_(next_number()),
       storage_(number_) {}
 

@@ -14,7 +14,7 @@ namespace snug {
 /// The data behind a Surface: its limit surface, and a tree that the first query builds.
 class SurfaceData {
  public:
-  SurfaceData(ControlMesh mesh, const SurfaceOptions& options);
+  SurfaceData(ControlMesh mesh, const SurfaceOptions& options, const Run& run = {});
   /// A frame of a moving surface: `like` with other control points. Frames share the plan of their trees.
   /// Errors:    those of LimitSurface::move().
   SurfaceData(const SurfaceData& like, std::span<const Point3> points, std::shared_ptr<SharedPlan> plan);

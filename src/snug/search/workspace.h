@@ -48,4 +48,9 @@ class Workspace::Pieces {
   std::uint64_t query_ = 0;
 };
 
+/// The workspace of a run.
+[[nodiscard]] inline Workspace& workspace_of(const Run& run) {
+  return run.workspace != nullptr ? *run.workspace : Workspace::of_this_thread();
+}
+
 }  // namespace snug

@@ -16,8 +16,9 @@ namespace snug {
 namespace {
 
 SurfacePoint in_mesh_units(const LimitFrame& frame, const Point3& origin, PowerOfTwo back) {
+  const BoundedPoint point = unscaled(frame.point.from(origin), back);
   SurfacePoint result{
-      unscaled(frame.point.from(origin), back), {}, frame.differentiable, frame.normal, frame.normal_error};
+      {point.position, point.error, {}}, {}, frame.differentiable, frame.normal, frame.normal_error};
   for (std::size_t t = 0; t < 2; ++t) {
     const Vector3 tangent = back.apply(frame.tangents[t]);
     // At most 2^66 before.
@@ -27,7 +28,7 @@ SurfacePoint in_mesh_units(const LimitFrame& frame, const Point3& origin, PowerO
 }
 
 // The patch, or the first half of the quad, that a place lies on; checks all but u and v.
-PatchId first_patch(const LimitSurface& surface, const SurfaceParameter& at) {
+PatchId first_patch(const LimitSurface& surface, const Place& at) {
   const bool triangular = surface.rules().triangular();
   bool there = at.owner < surface.owner_count() && (!triangular || at.corner == 0);
   std::size_t patch = 0;
@@ -40,20 +41,18 @@ PatchId first_patch(const LimitSurface& surface, const SurfaceParameter& at) {
   return PatchId(patch);
 }
 
-bool on_one_patch(const SurfaceParameter& a, const SurfaceParameter& b) {
-  return a.owner == b.owner && a.corner == b.corner;
-}
+bool on_one_patch(const Place& a, const Place& b) { return a.owner == b.owner && a.corner == b.corner; }
 
 // Numbers of points such that those of one face, or quad, follow each other. Empty where most do already, or
 // where there are so few that hardly two lie on one face.
-std::vector<std::size_t> grouped_by_patch(const LimitSurface& surface, std::span<const SurfaceParameter> at) {
+std::vector<std::size_t> grouped_by_patch(const LimitSurface& surface, std::span<const Place> at) {
   std::size_t changes = 0;
   for (std::size_t i = 1; i < at.size(); ++i) {
     changes += !on_one_patch(at[i], at[i - 1]);
   }
   if (changes < at.size() / 8 || at.size() < surface.patch_count() / 8) return {};
   std::vector<std::size_t> begins(surface.patch_count() + 1, 0), order(at.size());
-  for (const SurfaceParameter& a : at) ++begins[first_patch(surface, a).index() + 1];
+  for (const Place& a : at) ++begins[first_patch(surface, a).index() + 1];
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
   for (std::size_t i = 0; i < at.size(); ++i) order[begins[first_patch(surface, at[i]).index()]++] = i;
   return order;
@@ -76,20 +75,19 @@ double write_rounded(const BoundedPoint& point, float* out) {
 // A thread's evaluator, with some points of one face, or quad, and their numbers.
 struct Worker {
   explicit Worker(const LimitSurface& surface) : evaluator(surface) {}
-  [[nodiscard]] std::span<const SurfaceParameter> places() const { return {at.data(), count}; }
+  [[nodiscard]] std::span<const Place> places() const { return {at.data(), count}; }
 
   static constexpr std::size_t most = 64;
   SurfaceEvaluator evaluator;
   std::size_t count = 0;
-  std::array<SurfaceParameter, most> at;
+  std::array<Place, most> at;
   std::array<std::size_t, most> numbers;
   std::array<BoundedPoint, most> points;  // room for answers
 };
 
 // Calls visit(worker) with some points until all have had their turn.
 template <class Visit>
-void evaluate_all(const LimitSurface& surface, std::span<const SurfaceParameter> at, int threads,
-                  const Visit& visit) {
+void evaluate_all(const LimitSurface& surface, std::span<const Place> at, int threads, const Visit& visit) {
   constexpr std::size_t worth_a_thread = 2048;
   const std::vector<std::size_t> order = grouped_by_patch(surface, at);
   parallel_for_with(
@@ -125,7 +123,7 @@ double write_with_normals(Worker& worker, const FloatPoints& out) {
   for (std::size_t k = 0; k < worker.count; ++k) {
     const std::size_t first = 3 * worker.numbers[k];
     const SurfacePoint point = worker.evaluator(worker.at[k]);
-    largest = std::max(largest, write_rounded(point, out.positions.data() + first));
+    largest = std::max(largest, write_rounded({point.point, point.error}, out.positions.data() + first));
     const Vector3 normal = point.normal.value_or(Vector3{});
     for (std::size_t a = 0; a < 3; ++a) out.normals[first + a] = static_cast<float>(normal[a]);
   }
@@ -134,7 +132,7 @@ double write_with_normals(Worker& worker, const FloatPoints& out) {
 
 }  // namespace
 
-void SurfaceEvaluator::turn_to(const SurfaceParameter& at) {
+void SurfaceEvaluator::turn_to(const Place& at) {
   if (last_ && owner_ == at.owner && corner_ == at.corner) return;
   last_.reset();
   const PatchId patch = first_patch(*surface_, at);
@@ -145,24 +143,23 @@ void SurfaceEvaluator::turn_to(const SurfaceParameter& at) {
   corner_ = at.corner;
 }
 
-SurfacePoint SurfaceEvaluator::operator()(const SurfaceParameter& at) {
+SurfacePoint SurfaceEvaluator::operator()(const Place& at) {
   turn_to(at);
-  return in_mesh_units(evaluator_.frame(at), evaluator_.origin(), back_);
+  SurfacePoint point = in_mesh_units(evaluator_.frame(at), evaluator_.origin(), back_);
+  point.at = at;
+  return point;
 }
 
-void SurfaceEvaluator::positions(std::span<const SurfaceParameter> at, std::span<BoundedPoint> out) {
+void SurfaceEvaluator::positions(std::span<const Place> at, std::span<BoundedPoint> out) {
   if (at.empty()) return;
   turn_to(at.front());
   evaluator_.points(at, out);
   for (BoundedPoint& point : out) point = unscaled(point, back_);
 }
 
-SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
-  return SurfaceEvaluator(surface)(at);
-}
+SurfacePoint evaluate(const LimitSurface& surface, const Place& at) { return SurfaceEvaluator(surface)(at); }
 
-std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at,
-                                   int threads) {
+std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const Place> at, int threads) {
   std::vector<SurfacePoint> points(at.size());
   evaluate_all(surface, at, threads, [&](Worker& worker) {
     for (std::size_t k = 0; k < worker.count; ++k) points[worker.numbers[k]] = worker.evaluator(worker.at[k]);
@@ -170,8 +167,7 @@ std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const 
   return points;
 }
 
-double evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
-                int threads) {
+double evaluate(const LimitSurface& surface, std::span<const Place> at, const FloatPoints& out, int threads) {
   const bool normals = !out.normals.empty();
   require_value(out.positions.size() == 3 * at.size() && (!normals || out.normals.size() == 3 * at.size()),
                 "evaluate: there must be room for three floats a point");
@@ -192,7 +188,7 @@ SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
   return in_mesh_units(limit_frame(patch_, at), patch_.origin, back_);
 }
 
-SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at) {
+Place place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at) {
   const auto [owner, part] = surface.place(patch);
   if (surface.rules().triangular()) {
     const double u = std::clamp(at.u, 0.0, 1.0);
@@ -203,7 +199,7 @@ SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TrianglePa
   return {owner, part / 2, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0)};
 }
 
-std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParameter& at) {
+std::optional<PatchId> patch_at(const LimitSurface& surface, const Place& at) {
   const double u = at.u, v = at.v;
   if (at.owner >= surface.owner_count() || !(u >= 0 && v >= 0 && u <= 1 && v <= 1)) return {};
   const LimitSurface::PatchRange range = surface.patches_of(at.owner);
@@ -217,8 +213,7 @@ std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParame
   return PatchId(patch);
 }
 
-std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
-                                       const Motion& pose) {
+std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Place& at, const Motion& pose) {
   const SurfacePoint point = evaluate(surface, at);
   if (!point.normal) return std::nullopt;
   SurfaceNormal result{normalized(pose.rotate(*point.normal)), {}};

@@ -18,18 +18,18 @@ namespace snug {
 /// Guarantee: u and v are within 2^-51 of the exact ones; patch_at() finds a patch there, for the other half
 ///            of the quad where rounding crosses its diagonal.
 /// Requires:  surface.has_patch(patch); u, v >= 0 and u + v <= 1, up to a rounding.
-[[nodiscard]] SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at);
+[[nodiscard]] Place place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at);
 
 /// The patch that a place lies on.
 /// Nothing where there is no such owner, corner or parameter, or no surface.
-[[nodiscard]] std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParameter& at);
+[[nodiscard]] std::optional<PatchId> patch_at(const LimitSurface& surface, const Place& at);
 
 /// The limit point at a place: evaluate() of evaluate.h.
-[[nodiscard]] SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at);
+[[nodiscard]] SurfacePoint evaluate(const LimitSurface& surface, const Place& at);
 
 /// normal_at() of evaluate.h.
 /// Requires:  patch_at(surface, at).
-[[nodiscard]] std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
+[[nodiscard]] std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Place& at,
                                                      const Motion& pose = {});
 
 /// Evaluates points of a surface. What was refined for a point is kept for those that follow on the same face,
@@ -43,13 +43,13 @@ class SurfaceEvaluator {
  public:
   explicit SurfaceEvaluator(const LimitSurface& surface)
       : surface_(&surface), back_(surface.scale().inverse()) {}
-  [[nodiscard]] SurfacePoint operator()(const SurfaceParameter& at);
+  [[nodiscard]] SurfacePoint operator()(const Place& at);
   /// Positions of points that lie on one face, or quad of its first split.
   /// Requires:  out.size() == at.size().
-  void positions(std::span<const SurfaceParameter> at, std::span<BoundedPoint> out);
+  void positions(std::span<const Place> at, std::span<BoundedPoint> out);
 
  private:
-  void turn_to(const SurfaceParameter& at);
+  void turn_to(const Place& at);
 
   const LimitSurface* surface_;
   PowerOfTwo back_;
@@ -60,10 +60,9 @@ class SurfaceEvaluator {
 };
 
 /// evaluate() of evaluate.h, for many points.
-[[nodiscard]] std::vector<SurfacePoint> evaluate(const LimitSurface& surface,
-                                                 std::span<const SurfaceParameter> at, int threads);
-double evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
-                int threads);
+[[nodiscard]] std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const Place> at,
+                                                 int threads);
+double evaluate(const LimitSurface& surface, std::span<const Place> at, const FloatPoints& out, int threads);
 
 /// Evaluates points of one patch at its own parameters, with derivatives along its u and v; u, v >= 0 and u + v
 /// <= 1. InputError (value) for a patch that is not there and a parameter that is not on it, NaN included.

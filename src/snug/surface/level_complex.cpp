@@ -54,9 +54,9 @@ PieceName PieceName::child(unsigned digit) const {
 }
 
 std::array<std::array<std::uint32_t, 2>, 3> PieceName::corners() const {
-  using Place = std::array<std::uint32_t, 2>;
-  if (turned) return {Place{i + 1, j + 1}, Place{i, j + 1}, Place{i + 1, j}};
-  return {Place{i, j}, Place{i + 1, j}, Place{i, j + 1}};
+  using Corner = std::array<std::uint32_t, 2>;
+  if (turned) return {Corner{i + 1, j + 1}, Corner{i, j + 1}, Corner{i + 1, j}};
+  return {Corner{i, j}, Corner{i + 1, j}, Corner{i, j + 1}};
 }
 
 PiecePath PieceName::path() const {

@@ -9,8 +9,8 @@
 #include <snug/bound.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/mesh/topology.h>
-#include <snug/monitor.h>
 #include <snug/patch/patch.h>
+#include <snug/run.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/rules.h>
 #include <support/scaling.h>

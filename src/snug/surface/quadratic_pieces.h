@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <snug/bounds/quadratic.h>
-#include <snug/monitor.h>
 #include <snug/patch/piece_path.h>
+#include <snug/run.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
