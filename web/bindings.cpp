@@ -90,7 +90,7 @@ val fault(const char* problem, const std::string& message) {
   return result;
 }
 
-// What work() returns, or what it threw.
+// The result of work(), or its exception.
 template <class Work>
 val guarded(const Work& work) {
   constexpr const char* out_of_memory = "out of memory: the mesh or the answer is too large for a page";

@@ -16,7 +16,7 @@ namespace snug::command {
 namespace {
 
 struct CountsOptions : CommonOptions {
-  std::string mesh, tolerance;
+  std::string mesh, error;
   std::optional<std::uint64_t> level;
   Degree degree;
 };
@@ -61,8 +61,7 @@ std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options,
 
 ExitStatus counts(const CountsOptions& options) {
   std::optional<Length> tolerance;
-  if (!options.level)
-    tolerance = parse_length(options.tolerance.empty() ? "1%" : options.tolerance, "--tolerance");
+  if (!options.level) tolerance = parse_length(options.error.empty() ? "1%" : options.error, "--error");
   ControlMesh mesh = load_mesh(options.mesh, options);
   Report report("bounds", options);
   std::string scheme;
@@ -120,11 +119,12 @@ Command bounds_command() {
   auto options = std::make_shared<CountsOptions>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
-  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Split until each radius, or half a box's longest side, is at most half of this (default 1%)");
+  list.add(Group::own, "--error LENGTH", &options->error,
+           "Split until each radius, or half a box's longest side, is at most half of this (default 1%)")
+      .formerly("--tolerance");
   list.add(Group::own, "--level N", &options->level, "Or split every patch N times, 0 to 12")
       .between(0, 12)
-      .excludes("--tolerance");
+      .excludes("--error");
   list.add(Group::own, "--max-splits N", &options->max_splits, "Split at most N patches, by each method")
       .formerly("--budget")
       .between(0, std::uint64_t{1} << 40);
@@ -133,7 +133,7 @@ Command bounds_command() {
   return {"bounds",
           Topic::comparisons,
           "Number of pieces by bounding rows, tables of two layouts, boxes, and after splitting at creases",
-          {"snug-research bounds bracket.obj --tolerance 2%"},
+          {"snug-research bounds bracket.obj --error 2%"},
           std::move(list),
           [options] { return counts(*options); }};
 }

@@ -1,4 +1,4 @@
-// What the library throws, as Python's exceptions.
+// The library's exceptions as Python's.
 
 #include <stdexcept>
 

@@ -122,7 +122,7 @@ std::string note_of(Outcome outcome) {
   return outcome == Outcome::complete ? "" : std::string(", ") + name_of(outcome);
 }
 
-// What Collision and Distance have in common.
+// Members that Collision and Distance have in common.
 
 const WitnessPoints* witness_of(const Collision& answer) {
   return answer.witness ? &*answer.witness : nullptr;

@@ -115,7 +115,7 @@ Motion Poses::at(std::size_t i) const {
   }
 }
 
-// What is no motion: the nearest one if that is wanted and there is one.
+// For numbers that are no motion: the nearest one, if that is wanted and there is one.
 Motion Poses::mended(std::size_t i, std::string_view fault) const {
   const auto refuse_pose = [&](std::string_view why, double defect, const char* next_step) {
     constexpr std::string_view prefix = "pose: ";

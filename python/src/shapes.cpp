@@ -1,4 +1,4 @@
-// What is made from a surface: bounds, boxes, triangles, hulls, measures, deviations, refined meshes.
+// Things made from a surface: bounds, boxes, triangles, hulls, measures, deviations, refined meshes.
 
 #include <cmath>
 
@@ -16,7 +16,7 @@
 
 namespace snug {
 
-// What is pickled of the structs that own memory; looked up beside them.
+// Members to pickle of the structs that own memory; looked up beside them.
 using python::Either;
 
 auto members_of(Either<PatchEnclosure> auto& t) {

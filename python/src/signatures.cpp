@@ -9,7 +9,7 @@ namespace {
 
 using Record = py::detail::function_record;
 
-/// What pybind11 keeps about a function; null for what it did not make, and for overloads.
+/// Pybind11's record of a function; null for a function that it did not make, and for overloads.
 const Record* record_of(py::handle object) {
   const py::handle function = py::detail::get_function(object);
   if (!function || PyCFunction_Check(function.ptr()) == 0) return nullptr;

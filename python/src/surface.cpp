@@ -200,7 +200,7 @@ ControlMesh mesh_of(const py::object& vertices, const py::object& faces, bool as
   return mesh;
 }
 
-// What the library says about options, in Python's words.
+// A line of the library about options, in Python's words.
 std::string in_words_of_python(std::string line) {
   for (const Scheme scheme : {Scheme::flat, Scheme::loop}) {
     const std::string words = std::string("scheme ") + name_of(scheme);
@@ -261,7 +261,7 @@ std::string path_of(const py::object& path) {
   return name == "-" ? "./-" : name;
 }
 
-// What work() throws about the file gets its name.
+// Exceptions of work() about the file get its name.
 template <class Work>
 auto naming(const std::string& path, const Work& work) {
   try {

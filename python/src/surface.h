@@ -11,7 +11,7 @@
 
 namespace snug::python {
 
-/// What Python calls a Surface: a handle to a limit surface, which update() replaces.
+/// Python's Surface: a handle to a limit surface, which update() replaces.
 class PySurface {
  public:
   PySurface(ControlMesh mesh, const SurfaceOptions& options, const Run& run = {});

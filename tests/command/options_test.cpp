@@ -94,22 +94,59 @@ TEST(options, that_would_change_nothing_are_refused) {
 }
 
 TEST(old_names, work_for_a_version_with_a_note) {
-  const std::string pin = model("pin.obj");
+  const TemporaryFolder folder;
+  const std::string pin = model("pin.obj"), bracket = model("bracket.obj"),
+                    points = folder.file("points.txt"), rays = folder.file("rays.txt"),
+                    facets = folder.file("facets.off"), out = folder.file("out.ply");
+  std::ofstream(points) << "1 2 3\n";
+  std::ofstream(rays) << "0.02 0.01 9 0 0 -1\n";
+  ASSERT_EQ(run_snug({"tessellate", pin, "--error", "5%", "-o", facets}).status, 0);
   using Words = std::vector<std::string>;
-  for (const auto& [before, now, note] : std::vector<std::tuple<Words, Words, std::string>>{
-           {{"bound", pin, "--tolerance", "5%"},
-            {"bound", pin, "--error", "5%"},
-            "--tolerance is now --error"},
-           {{"bound", pin, "--budget=9"}, {"bound", pin, "--max-splits=9"}, "--budget is now --max-splits"},
-           {{"self", pin}, {"self-contact", pin}, "self is now self-contact"}}) {
-    Words old_words = before, words = now;
-    old_words.emplace_back("--json");
-    words.emplace_back("--json");
-    EXPECT_EQ(comparable(old_words), comparable(words)) << note;
-    EXPECT_NE(run_snug(old_words).err.find("note: " + note), std::string::npos) << note;
-    old_words.emplace_back("--quiet");
-    EXPECT_EQ(run_snug(old_words).err, "") << note;
+  struct Name {
+    Words words;
+    std::string before, now, value;
+  };
+  std::vector<Name> names{
+      {{"bound", pin}, "--tolerance", "--error", "5%"},
+      {{"tessellate", pin, "-o", out}, "--tolerance", "--error", "5%"},
+      {{"hull", pin, "--outer", out}, "--tolerance", "--error", "5%"},
+      {{"envelope", pin, "-o", out}, "--tolerance", "--error", "5%"},
+      {{"collide", pin, bracket, "--all"}, "--precision", "--error", "5%"},
+      {{"deviation", pin, facets}, "--precision", "--absolute", "5%"},
+      {{"deviation", pin, facets}, "--tolerance", "--threshold", "50%"},
+      {{"distance", pin, bracket}, "--precision", "--absolute", "5%"},
+      {{"closest", pin, "--points", points}, "--precision", "--absolute", "5%"},
+      {{"ray", pin, "--rays", rays}, "--precision", "--absolute", "5%"},
+      {{"measure", pin}, "--precision", "--relative", "5%"},
+      {{"self-contact", pin}, "--tolerance", "--within", "0.1%"},
+  };
+  for (const Words& words : std::vector<Words>{{"bound", pin},
+                                               {"distance", pin, bracket},
+                                               {"deviation", pin, facets},
+                                               {"measure", pin},
+                                               {"self-contact", pin},
+                                               {"tessellate", pin, "--error", "5%", "-o", out},
+                                               {"hull", pin, "--error", "5%", "--outer", out},
+                                               {"envelope", pin, "--error", "5%", "-o", out}}) {
+    names.push_back({words, "--budget", "--max-splits", "1000000"});
   }
+  const auto expect_same = [](Words before, Words now, const std::string& note) {
+    before.emplace_back("--json");
+    now.emplace_back("--json");
+    EXPECT_EQ(comparable(before), comparable(now)) << note;
+    EXPECT_NE(run_snug(before).err.find("note: " + note), std::string::npos) << now.front() << ' ' << note;
+    before.emplace_back("--quiet");
+    EXPECT_EQ(run_snug(before).err, "") << now.front() << ' ' << note;
+  };
+  for (const auto& [words, before, now, value] : names) {
+    Words old_words = words, new_words = words;
+    old_words.insert(old_words.end(), {before, value});
+    new_words.push_back(now + "=" + value);
+    expect_same(old_words, new_words, before + " is now " + now);
+  }
+  expect_same({"self", pin}, {"self-contact", pin}, "self is now self-contact");
+  expect_same({"contact", pin, bracket, "--velocity-b", "0 0 9"},
+              {"time-of-contact", pin, bracket, "--velocity-b", "0 0 9"}, "contact is now time-of-contact");
   EXPECT_EQ(run_snug({"bound", pin, "--error", "5%", "--tolerance", "5%"}).status, 2);
 }
 

@@ -129,7 +129,7 @@ TEST(program, prisms_are_left_where_nets_are_bent) {
 }
 
 TEST(program, counts_pieces_by_what_lost) {
-  const json document = answer({"bounds", model("star.obj"), "--tolerance", "5%"});
+  const json document = answer({"bounds", model("star.obj"), "--error", "5%"});
   EXPECT_EQ(document["scheme"], "loop");
   ASSERT_EQ(document["rows"].size(), 5u);
   const json& rows = document["rows"];
