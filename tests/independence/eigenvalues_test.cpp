@@ -170,7 +170,7 @@ TEST(eigenvalues, of_catmark_that_are_the_corners_own_would_meet_others_where_th
     const OwnOfCatmark own(n);
     for (int u = 1; u <= 4; ++u) {
       // A common root of 16 x^2 - (12 - u) x + 1 and the corner's own is one of their difference.
-      const mpq_class slope = own.sum - mpq_class(12 - u, 16), rest = own.product - mpq_class(1, 16);
+      const mpq_class slope = own.sum - mpq_class(12 - u) / 16, rest = own.product - mpq_class(1, 16);
       const bool meet = slope == 0 ? rest == 0 : own.has(rest / slope);
       const mpz_class big = n;
       EXPECT_EQ(meet, big * (big - 3) * u * u - (20 * big - 84) * u - 80 == 0) << n << " " << u;
