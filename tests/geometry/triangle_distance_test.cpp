@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <support/direction.h>
 #include <testing/containment.h>
+#include <testing/counts.h>
 #include <testing/instruction_sets.h>
 
 #include <bit>
@@ -45,7 +46,7 @@ Triangle any_triangle(std::mt19937_64& random, double size, const Point3& centre
 
 TEST(nearest_triangles, never_claims_more_than_the_distance) {
   std::mt19937_64 random(20);
-  for (int trial = 0; trial < 100000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(100000)); ++trial) {
     const double size = std::ldexp(1.0, -static_cast<int>(random() % 30));
     const Point3 centre{1, -0.7, 0.3};
     const Triangle a = any_triangle(random, size, centre);

@@ -45,7 +45,7 @@ TEST(outer_gap, is_at_most_the_distance_of_any_two_corners) {
   std::mt19937_64 random(21);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::size_t positive = 0, tight = 0;
-  for (int trial = 0; trial < 6000 && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(6000)) && !HasFailure(); ++trial) {
     const std::array exponents{0, -400, 300, -950, 900, -30};
     const double scale = std::ldexp(1.0, exponents[random() % exponents.size()]);
     const auto body = [&](double far) {
@@ -79,8 +79,8 @@ TEST(outer_gap, is_at_most_the_distance_of_any_two_corners) {
     positive += gap > 0;
     tight += static_cast<long double>(gap) > 0.95L * least;
   }
-  EXPECT_GT(positive, 3000u);
-  EXPECT_GT(tight, 1000u);
+  EXPECT_GT(positive, testing::fewer(3000));
+  EXPECT_GT(tight, testing::fewer(1000));
 }
 
 // A pose as far from rigid as is allowed, or turned by right angles so that axes are parallel, or any.
@@ -179,7 +179,7 @@ TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
   std::mt19937_64 random(24);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::size_t positive = 0;
-  for (int trial = 0; trial < 8000 && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(8000)) && !HasFailure(); ++trial) {
     const double size = std::ldexp(1.0, std::array{0, -400, 300, -30}[random() % 4]);
     ControlMesh mesh;
     const double own = random() % 2 == 0 ? 0 : 100 * size * unit(random);
@@ -229,7 +229,7 @@ TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
     }
     positive += best > 0;
   }
-  EXPECT_GT(positive, 2000u);
+  EXPECT_GT(positive, testing::fewer(2000));
 }
 
 // Nothing but points, apart by so little that squares are among the last numbers, or none.

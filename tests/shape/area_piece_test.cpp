@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <testing/counts.h>
 #include <array>
 #include <cmath>
 #include <random>
@@ -150,7 +151,7 @@ TEST(area_piece, holds_the_area_however_it_is_split) {
 TEST(area_piece, holds_where_the_normal_is_short) {
   std::mt19937_64 random(4);
   for (const Domain domain : {Domain::triangle, Domain::square}) {
-    for (int trial = 0; trial < 1500; ++trial) {
+    for (int trial = 0; trial < static_cast<int>(testing::fewer(1500)); ++trial) {
       const Coefficients normal = random_normal(trial % 5 == 0 ? 8 : 7, domain, random);
       AreaPiece piece(domain, normal, 0);
       piece.tighten();
