@@ -39,6 +39,7 @@ std::vector<Question> questions(const TemporaryFolder& folder, const std::string
       {{"closest", pawn, "--points", points, "--absolute", "1e-14"}, "1000", ""},
       {{"ray", pawn, "--rays", rays, "--absolute", "1e-14"}, "10", ""},
       {{"self-contact", pawn, "--within", "1e-7"}, "1000", ""},
+      {{"self-contact", pin, "--within", "3%"}, "20000", ""},
       {{"measure", pawn, "--relative", "1e-12"}, "1000", "/stats/splits"},
       {{"time-of-contact", pawn, pawn, "--velocity-b", "0 0 9", "--move-b", "1 0 -5", "--tolerance", "1e-13"},
        "5",
