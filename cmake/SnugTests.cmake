@@ -15,9 +15,6 @@ find_package(GTest REQUIRED)
 
 add_custom_target(tests_fast)
 
-# With clang and sanitizers optimizing is most of what a test takes to compile.
-set(snug_tests_sanitized $<$<CONFIG:RelWithDebInfo>:-O0>)
-
 function(snug_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT;LABEL;FILTER" "SOURCES;LINK" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS OR NOT ARG_SOURCES)
@@ -39,13 +36,13 @@ function(snug_test name)
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME folder)
   add_executable(${name} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/tests
-                                           UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
+                                           UNITY_BUILD ${snug_unity} UNITY_BUILD_BATCH_SIZE 5)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_precompile_headers(${name} REUSE_FROM snug_tests_standard)
   if(NOT ARG_LABEL STREQUAL "slow")  # compiled once, run briefly
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
-  target_compile_options(${name} PRIVATE ${snug_tests_sanitized})
+  target_compile_options(${name} PRIVATE ${snug_quickly_compiled})
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   if(NOT folder STREQUAL "oracle")
     target_link_libraries(${name} PRIVATE snug_testing)

@@ -72,7 +72,7 @@ double subdominant_of(Scheme scheme, std::size_t n) {
   return rules_of(scheme).shrink_factor({0, static_cast<std::uint16_t>(n - 1)});
 }
 
-CornerEigenvalues catmark_eigenvalues(std::size_t n) {
+LargestEigenvalues catmark_eigenvalues(std::size_t n) {
   // The Fourier block of index 0 has two eigenvalues beside 1, of sum 3/4 - 7/(4n) and product (1 - 3/n)/16;
   // the larger of index 2 is found as that of index 1.
   const auto valence = static_cast<double>(n);
@@ -84,7 +84,7 @@ CornerEigenvalues catmark_eigenvalues(std::size_t n) {
   return {subdominant, subdominant, std::max(symmetric, (5 + c + std::sqrt((1 + c) * (9 + c))) / 16)};
 }
 
-CornerEigenvalues midedge_eigenvalues(std::size_t n) {
+LargestEigenvalues midedge_eigenvalues(std::size_t n) {
   // 1/4 comes with the next ring of quads.
   const double c = n == 3 ? -1 : std::cos(4 * std::numbers::pi / static_cast<double>(n));
   const double subdominant = subdominant_of(Scheme::midedge, n);
@@ -140,7 +140,7 @@ PatchId first_patch(const LimitSurface& surface) { return PatchId(surface.patche
 
 }  // namespace
 
-CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme) {
+LargestEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme) {
   require_value(n >= 3, "eigenvalues: a valence is at least 3");
   if (scheme == Scheme::catmark) return catmark_eigenvalues(n);
   if (scheme == Scheme::doo_sabin) return {subdominant_of(scheme, n), subdominant_of(scheme, n), 0.25};
@@ -152,7 +152,7 @@ CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme) {
   return {subdominant, subdominant, std::max(subdominant * subdominant, 0.375 + 0.25 * (2 * c * c - 1))};
 }
 
-CornerEigenvalues corner_eigenvalues(Scheme scheme, const NetPlace& place) {
+LargestEigenvalues corner_eigenvalues(Scheme scheme, const NetPlace& place) {
   if (place.centre == NetCentre::interior) return corner_eigenvalues(place.faces, scheme);
   const LimitSurface surface = net_surface(scheme, place, 1, std::make_shared<BoundsCache>());
   const std::vector<double> sizes = eigenvalue_sizes(corner_matrix(surface.patch(first_patch(surface))));
@@ -203,7 +203,7 @@ double fitted_factor(std::span<const double> values) {
 }
 
 double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure, Scheme scheme) {
-  const CornerEigenvalues eigenvalues = corner_eigenvalues(n, scheme);
+  const LargestEigenvalues eigenvalues = corner_eigenvalues(n, scheme);
   if (scheme != Scheme::loop) {
     // Bounding rows: below valence 4 the limit leaves the triangle of its corners sideways. The fair layout of
     // tables is that of the characteristic map at regular corners alone.
@@ -220,7 +220,7 @@ double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measu
 
 double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source, ThicknessMeasure measure) {
   if (place.centre == NetCentre::interior) return expected_factor(place.faces, source, measure, scheme);
-  const CornerEigenvalues eigenvalues = corner_eigenvalues(scheme, place);
+  const LargestEigenvalues eigenvalues = corner_eigenvalues(scheme, place);
   if (is_regular(scheme, place)) return eigenvalues.next;
   const std::size_t n = place.faces;
   if (measure == ThicknessMeasure::normal) {

@@ -18,16 +18,16 @@ namespace snug {
 /// The three largest eigenvalues after 1 of the subdivision matrix at a vertex, of a dual scheme at a face.
 /// Inside the mesh the first two are equal and belong to the tangent plane. Loop has there
 /// lambda = 3/8 + cos(2 pi/n)/4, and `next` is max(lambda^2, 3/8 + cos(4 pi/n)/4), 1/8 for n = 3.
-struct CornerEigenvalues {
+struct LargestEigenvalues {
   double subdominant, second, next;
 };
 /// Inside the mesh, in closed form.
 /// Errors:    InputError (value) unless n >= 3.
 /// Source:    derivations/loop_limits.md, catmark_limits.md, midedge_bezier.md; docs/convergence.md.
-[[nodiscard]] CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme = Scheme::loop);
+[[nodiscard]] LargestEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme = Scheme::loop);
 /// In the middle of bent_net(). Elsewhere than inside: sizes of eigenvalues of the corner's matrix
 /// (eigenvalues.h).
-[[nodiscard]] CornerEigenvalues corner_eigenvalues(Scheme scheme, const NetPlace& place);
+[[nodiscard]] LargestEigenvalues corner_eigenvalues(Scheme scheme, const NetPlace& place);
 
 /// Three thicknesses of an enclosure.
 enum class ThicknessMeasure : std::uint8_t {

@@ -184,7 +184,7 @@ void write_rates(Report& report, const RateOptions& wanted, const std::vector<Ra
                                  "bounds");
   for (const ThicknessMeasure m : all_thickness_measures) line += fmt::format("  {:<17}", name_of(m));
   report.text(line);
-  CornerEigenvalues eigenvalues{};
+  LargestEigenvalues eigenvalues{};
   for (std::size_t i = 0; i < rows.size();) {
     const NetPlace& place = rows[i].place;
     if (i == 0 || rows[i - 1].place != place) eigenvalues = corner_eigenvalues(wanted.scheme, place);
@@ -214,7 +214,7 @@ ExitStatus rates(const RatesOptions& options) {
   if (report.json()) {
     JsonWriter& json = report.write().field("seed", options.seed);
     json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
-    CornerEigenvalues eigenvalues{};
+    LargestEigenvalues eigenvalues{};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const RateRow& row = rows[i];
       if (i == 0 || rows[i - 1].place != row.place)

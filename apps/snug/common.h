@@ -33,7 +33,7 @@ struct CommonOptions {
   bool json = false;
   std::string output;  ///< -o; empty for none
   int threads = 0;
-  std::uint64_t max_splits = 1'000'000;
+  std::uint64_t max_splits = default_splits::bound;
   std::string weld;   ///< a length; empty: only equal vertices of STL and glTF files are
   std::string sharp;  ///< an angle or auto; empty: only what tags make sharp
   bool quiet = false;

@@ -248,7 +248,7 @@ ExitStatus run(const Options& options) {
 Command contact_command() {
   auto options = std::make_shared<Options>();
   options->moves = true;
-  options->max_splits = 1'000'000;
+  options->max_splits = default_splits::time_of_contact;
   OptionList list;
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);

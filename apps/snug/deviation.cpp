@@ -241,7 +241,7 @@ ExitStatus run(const Options& options) {
 
 Command deviation_command() {
   auto options = std::make_shared<Options>();
-  options->max_splits = 50'000'000;
+  options->max_splits = default_splits::deviation;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "CANDIDATE", &options->candidate,

@@ -100,7 +100,7 @@ ExitStatus run(const Options& options) {
 
 Command measure_command() {
   auto options = std::make_shared<Options>();
-  options->max_splits = 10'000'000;
+  options->max_splits = default_splits::measure;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--relative SHARE", &options->precision,

@@ -127,7 +127,7 @@ ExitStatus run(const Options& options) {
 
 Command ray_command() {
   auto options = std::make_shared<Options>();
-  options->max_splits = 20'000;
+  options->max_splits = default_splits::ray;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--rays FILE", &options->rays,

@@ -88,7 +88,7 @@ ExitStatus run(const Options& options) {
 
 Command self_command() {
   auto options = std::make_shared<Options>();
-  options->max_splits = 1'000'000;
+  options->max_splits = default_splits::self_contact;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--within LENGTH", &options->tolerance,

@@ -116,7 +116,7 @@ ExitStatus run(const Options& options) {
 
 Command tessellate_command() {
   auto options = std::make_shared<Options>();
-  options->max_splits = 5'000'000;
+  options->max_splits = default_splits::tessellate;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,9 @@
 namespace snug::python {
 
 namespace py = pybind11;
+
+/// What stands for a number that there is none of.
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers from Python as C-contiguous doubles: the array's own memory if it holds such, else a copy. Whoever holds this
 /// keeps them alive; they must not be changed during a call.

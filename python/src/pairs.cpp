@@ -13,8 +13,6 @@
 namespace snug::python {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // The names that an enum has.
 template <class Enum>
 Enum named(const py::object& given, std::initializer_list<std::pair<const char*, Enum>> names,

@@ -15,8 +15,6 @@
 namespace snug::python {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // One answer, or one for each point.
 template <class T, class One, class Many>
 Answers<T> for_points(const PySurface& self, const py::object& given, const py::object& progress,

@@ -76,7 +76,7 @@ double factor_of_heights(std::size_t n, double centre, int block) {
 
 TEST(convergence, eigenvalues_are_those_of_the_subdivision) {
   for (const std::size_t n : experiment_valences) {
-    const CornerEigenvalues eigenvalues = corner_eigenvalues(n);
+    const LargestEigenvalues eigenvalues = corner_eigenvalues(n);
     EXPECT_NEAR(factor_of_heights(n, 0, 1), eigenvalues.subdominant, 1e-14) << n;
     EXPECT_LT(eigenvalues.next, eigenvalues.subdominant) << n;
     // The eigenvector of block 0 has the middle at -8/3 a(n) where the ring is at 1.
@@ -252,7 +252,7 @@ TEST(convergence, eigenvalues_of_boundaries_are_those_derived) {
         if (scheme == Scheme::catmark) expected.push_back(0.25);
         std::sort(expected.begin(), expected.end(), std::greater<>());
         // Eigenvalues without an eigenvector of their own come out with half the digits.
-        const CornerEigenvalues found = corner_eigenvalues(scheme, {centre, n});
+        const LargestEigenvalues found = corner_eigenvalues(scheme, {centre, n});
         EXPECT_NEAR(found.subdominant, expected[0], 1e-7) << name_of(scheme) << n;
         EXPECT_NEAR(found.second, expected[1], 1e-7) << name_of(scheme) << n;
         EXPECT_NEAR(found.next, expected[2], 1e-7) << name_of(scheme) << n;
@@ -268,7 +268,7 @@ TEST(convergence, the_corners_matrix_has_the_eigenvalues_in_closed_form) {
                                  std::make_shared<BoundsCache>());
       const std::vector<double> sizes =
           eigenvalue_sizes(corner_matrix(surface.patch(PatchId(surface.patches_of(0).begin))));
-      const CornerEigenvalues closed = corner_eigenvalues(n, scheme);
+      const LargestEigenvalues closed = corner_eigenvalues(n, scheme);
       EXPECT_NEAR(sizes[0], 1, 1e-12);
       EXPECT_NEAR(sizes[1], closed.subdominant, 1e-6) << name_of(scheme) << n;
       EXPECT_NEAR(sizes[2], closed.second, 1e-6) << name_of(scheme) << n;

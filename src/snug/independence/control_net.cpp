@@ -26,12 +26,6 @@ DirectedEdges directed_edges(const ControlNet& net) {
 
 Edge undirected(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
-mpq_class fraction(long numerator, long denominator) {
-  mpq_class q(numerator, denominator);
-  q.canonicalize();
-  return q;
-}
-
 Weight scaled(const Weight& w, const mpq_class& factor) {
   Weight result{w.rational * factor, w.cosines};
   for (auto& [index, value] : result.cosines) value *= factor;
@@ -46,7 +40,7 @@ Weight sum(const Weight& a, const Weight& b) {
 }
 
 // Weights of one point add up in its row.
-class RowBuilder {
+class WeightedRow {
  public:
   void add(std::uint32_t point, const Weight& w) {
     const auto at =
@@ -115,7 +109,7 @@ class NetRefinement {
   void add_primal() {
     const bool loop = scheme_.scheme == Scheme::loop;
     for (std::uint32_t f = 0; f < net_.faces.size() && !loop; ++f) {
-      RowBuilder row;
+      WeightedRow row;
       for (const std::uint32_t v : net_.faces[f])
         row.add(v, fraction(1, static_cast<long>(net_.faces[f].size())));
       result_.of_face[f] = add_point(row.take());
@@ -152,7 +146,7 @@ class NetRefinement {
     for (const std::uint32_t v : net_.corners) result_.net.corners.insert(*result_.of_vertex[v]);
   }
   WeightRow loop_edge(Edge edge) const {
-    RowBuilder row;
+    WeightedRow row;
     for (const Edge& side : {edge, Edge{edge.second, edge.first}}) {
       const auto [f, i] = edges_.at(side);
       row.add(side.first, fraction(3, 8));
@@ -161,7 +155,7 @@ class NetRefinement {
     return row.take();
   }
   WeightRow catmark_edge(Edge edge) const {
-    RowBuilder row;
+    WeightedRow row;
     for (const Edge& side : {edge, Edge{edge.second, edge.first}}) {
       row.add(side.first, fraction(1, 4));
       const auto& face = net_.faces[edges_.at(side).first];
@@ -175,7 +169,7 @@ class NetRefinement {
     Weight share{fraction(5, 8) - fraction(11, 64), {}};
     share = sum(share, scaled(twice_cosine(1, m, order_), fraction(-6, 64)));
     share = sum(share, scaled(twice_cosine(2, m, order_), fraction(-1, 64)));
-    RowBuilder row;
+    WeightedRow row;
     row.add(v, sum(Weight{1, {}}, scaled(share, -1)));
     for (const std::uint32_t w : ring) row.add(w, scaled(share, fraction(1, m)));
     return row.take();
@@ -185,7 +179,7 @@ class NetRefinement {
     const long m = static_cast<long>(ring.size());
     const mpq_class q = scheme_.older_vertices ? fraction(1, 4) : fraction(1, m);
     const mpq_class r = scheme_.older_vertices ? fraction(1, 4) : fraction(1, m);
-    RowBuilder row;
+    WeightedRow row;
     row.add(v, scheme_.older_vertices ? fraction(1, 2) : fraction(m - 3, m) + fraction(1, m));
     for (const std::uint32_t w : ring) {
       row.add(w, r * fraction(1, m));
@@ -254,7 +248,7 @@ class NetRefinement {
   }
   WeightRow dual_point(const std::vector<std::uint32_t>& face, std::uint32_t i) const {
     const auto m = static_cast<std::uint32_t>(face.size());
-    RowBuilder row;
+    WeightedRow row;
     if (scheme_.scheme == Scheme::midedge) {
       row.add(face[i], fraction(1, 2));
       row.add(face[(i + 1) % m], fraction(1, 4));

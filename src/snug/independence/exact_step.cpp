@@ -7,16 +7,6 @@
 #include <snug/scheme/rules.h>
 
 namespace snug {
-namespace {
-
-mpq_class fraction(std::size_t p, std::size_t q) {
-  mpq_class x(static_cast<unsigned long>(p), static_cast<unsigned long>(q));
-  x.canonicalize();
-  return x;
-}
-
-}  // namespace
-
 std::uint32_t order_of_masks(const RuledMesh& mesh, std::uint32_t order, std::uint32_t most) {
   const Topology& topology = mesh.topology;
   const Scheme scheme = mesh.options.scheme;

@@ -17,6 +17,13 @@ struct Weight {
   [[nodiscard]] bool is_rational() const { return cosines.empty(); }
 };
 
+/// p / q in lowest terms.
+inline mpq_class fraction(long p, long q) {
+  mpq_class x(p, q);
+  x.canonicalize();
+  return x;
+}
+
 /// A control point of a refined net as a combination of points of the net: pairs of a point and its weight.
 using WeightRow = std::vector<std::pair<std::uint32_t, Weight>>;
 

@@ -16,8 +16,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 // Returns whether rounding alone makes up the radius: then splitting does not help.
 template <std::size_t N>
 bool enclose(const std::array<Vector3, N>& corners, const Point3& origin, const OffsetSimplex<N>& offset,
@@ -156,7 +154,7 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
   // threads are busy.
   constexpr std::size_t max_wholes = 1024, max_pieces = 1 << 16;
   std::size_t chunk = 1;
-  const std::uint64_t max_splits = run.max_splits.value_or(default_splits);
+  const std::uint64_t max_splits = run.max_splits.value_or(default_splits::bound);
   BoundSummary summary;
   std::vector<Bounded<Pieces>> results;
   for (std::size_t begin = 0, count = 0; begin < all; begin += count) {

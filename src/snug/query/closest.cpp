@@ -20,8 +20,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 // Bounds of gaps err by some hundred roundings of coordinates.
 constexpr double noise = 0x1p-45;
 
@@ -54,7 +52,7 @@ class ClosestSearch {
         point_error_(to.error),
         options_(options),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)),
+        max_splits_(run.max_splits.value_or(default_splits::closest_point)),
         bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
                 *options.relative, noise * (2 + max_abs(to_ - Point3{}))) {}
 

@@ -17,8 +17,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 constexpr auto outcome_names = std::to_array<Named<Outcome>>({{"complete", Outcome::complete},
                                                               {"budget-spent", Outcome::budget_spent},
                                                               {"at-rounding", Outcome::at_rounding}});
@@ -41,7 +39,7 @@ class CollideSearch {
       : frames_(a, b),
         options_(options),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)) {
+        max_splits_(run.max_splits.value_or(default_splits::collide)) {
     margin_ = frames_.length_up(options.margin);
     reach_ = frames_.length_down((options.margin + *options.tolerance) * (1 - unit_roundoff));
   }

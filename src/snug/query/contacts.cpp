@@ -21,8 +21,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 200'000;
-
 // Pieces of regions are at most this share of the larger surface; those of which nothing is proved are split so many
 // times smaller.
 constexpr double largest_share = 0x1p-5, smallest_share = 0x1p-3;
@@ -59,7 +57,7 @@ class ContactsSearch {
         options_(options),
         run_(run),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)),
+        max_splits_(run.max_splits.value_or(default_splits::contacts)),
         tolerance_(frames_.length_up(*options.within)),
         within_(frames_.length_down(*options.within)) {}
 

@@ -25,8 +25,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 50'000'000;
-
 // In common units: below, roundings would be most of an interval.
 constexpr double min_precision = 0x1p-37;
 // Errors of quadratics: at first a share of the size, then smaller by a factor where that is not enough, at
@@ -82,7 +80,7 @@ class SurfaceSet final : public ComparedSet {
       : surface_(surface),
         to_common_(scale * surface.scale().inverse()),
         threads_(run.threads),
-        max_(pieces_beside + run.max_splits.value_or(default_splits) / parts_a_piece),
+        max_(pieces_beside + run.max_splits.value_or(default_splits::deviation) / parts_a_piece),
         monitor_(stop_only(run)),
         pieces_(quadratic_pieces(surface, own(error), threads_, monitor_)) {
     take();
@@ -261,7 +259,7 @@ struct ScaledOptions {
     // Less by the roundings of the way back.
     return {.precision = precision * (1 - 0x1p-10),
             .threshold = threshold,
-            .budget = run.max_splits.value_or(default_splits),
+            .budget = run.max_splits.value_or(default_splits::deviation),
             .threads = run.threads};
   }
 
@@ -282,7 +280,7 @@ bool is_reached(const Interval& distance, const DeviationOptions& options, doubl
   return distance.upper - distance.lower <= precision;
 }
 
-OneSidedDistance farther(const OneSidedDistance& a, const OneSidedDistance& b) {
+OneSidedDistance larger_of(const OneSidedDistance& a, const OneSidedDistance& b) {
   OneSidedDistance result = a.distance.lower >= b.distance.lower ? a : b;
   result.distance.upper = std::max(a.distance.upper, b.distance.upper);
   return result;
@@ -341,7 +339,7 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
   if (options.solid) {
     result.inside = result.from_candidate;
     result.outside = directions[2].answer(back);
-    result.from_candidate = farther(*result.inside, *result.outside);
+    result.from_candidate = larger_of(*result.inside, *result.outside);
   }
   const double precision = unscaled_up(asked.precision, back);
   bool reached = is_reached(result.from_surface.distance, options, precision) &&

@@ -16,8 +16,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 constexpr int max_attempts = 64;
 // Pairs that are followed down at the same time for a first upper bound.
 constexpr std::size_t beam = 4;
@@ -29,7 +27,7 @@ constexpr double min_gain = 0.125;
 constexpr double noise = 0x1p-43;
 
 bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
-bool farther(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
+bool farther_pair(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
 
 class DistanceSearch {
  public:
@@ -37,7 +35,7 @@ class DistanceSearch {
       : frames_(a, b),
         options_(options),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)),
+        max_splits_(run.max_splits.value_or(default_splits::distance)),
         bounds_(frames_.length_down(*options.absolute), *options.relative, noise) {
     bounds_.raise_lower(frames_.length_down(outer_gap(a, b)));
   }
@@ -132,7 +130,7 @@ class DistanceSearch {
     }
     const std::size_t first = stack.size();
     bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), stack)));
-    ordering::sort(stack.data() + first, stack.size() - first, farther);
+    ordering::sort(stack.data() + first, stack.size() - first, farther_pair);
     return true;
   }
 

@@ -33,8 +33,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 using Names = std::array<std::uint32_t, 3>;
 
 constexpr auto fault_names = std::to_array<Named<HullFault>>({
@@ -122,7 +120,7 @@ void keep_some(std::vector<HullProblem>& problems) {
 
 std::uint64_t max_pieces(const LimitSurface& surface, const Run& run) {
   const std::uint64_t triangles =
-      std::max<std::uint64_t>(run.max_splits.value_or(default_splits), surface.patch_count());
+      std::max<std::uint64_t>(run.max_splits.value_or(default_splits::hull), surface.patch_count());
   return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
 }
 
@@ -138,7 +136,7 @@ class OneHull {
         monitor_(stop_only(run)),
         run_{.threads = run.threads,
              .monitor = &monitor_,
-             .max_splits = run.max_splits.value_or(default_splits)},
+             .max_splits = run.max_splits.value_or(default_splits::hull)},
         scale_(surface.scale()),
         float_loss_(options.single_precision ? largest_float_loss() : 0),
         tolerances_(surface.owner_count(), first_share * *options.error),

@@ -21,12 +21,10 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 10'000'000;
-
 constexpr double default_relative = 1e-4;
 // Of a patch: pieces take a kilobyte each.
-constexpr std::uint64_t max_splits = 100'000;
-constexpr int max_rounds = 12;
+constexpr std::uint64_t max_patch_splits = 100'000;
+constexpr int max_quadratic_rounds = 12;
 
 // A sum of many numbers, as in twice the precision.
 class BoundedSum {
@@ -370,8 +368,8 @@ class SurfaceMeasurer {
     size_ = longest_side(box);
     origin_ = box.lower + 0.5 * (box.upper - box.lower);
     closed_ = is_closed(surface);
-    patch_splits_ =
-        std::min<std::uint64_t>(run.max_splits.value_or(default_splits) / patches_.size(), max_splits);
+    patch_splits_ = std::min<std::uint64_t>(
+        run.max_splits.value_or(default_splits::measure) / patches_.size(), max_patch_splits);
     find_shares();
   }
 
@@ -380,7 +378,7 @@ class SurfaceMeasurer {
     // Rests at corners count more in moments than in the area.
     double gap = 0.4 * relative * estimate_, tips = (closed_ ? 0.05 : 0.4) * relative * estimate_;
     Answer answer;
-    for (int round = 0; round < max_rounds; ++round) {
+    for (int round = 0; round < max_quadratic_rounds; ++round) {
       const bool some = round_of(gap, tips, round);
       if (round > 0 && !some) break;
       answer = answer_of(totals(), origin_, size_, relative, closed_);
@@ -396,7 +394,7 @@ class SurfaceMeasurer {
     bool spent = false;
     for (const PatchMeasures& patch : results_) {
       result.splits += patch.splits;
-      spent = spent || (patch.splits >= patch_splits_ && patch_splits_ < max_splits);
+      spent = spent || (patch.splits >= patch_splits_ && patch_splits_ < max_patch_splits);
     }
     result.outcome = outcome_of(answer.area_excess <= 1 && answer.solid_excess <= 1, spent);
     return result;

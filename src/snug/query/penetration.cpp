@@ -16,8 +16,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 20'000;
-
 // Steps in which a length is doubled until a translation separates, and halved towards the last that did not.
 constexpr int doublings = 12, halvings = 5;
 constexpr std::size_t max_descended = 4;  // of the best directions, along the normals of their contacts
@@ -70,7 +68,9 @@ class PenetrationSearch {
   }
 
  private:
-  [[nodiscard]] std::uint64_t max_splits() const { return run_.max_splits.value_or(default_splits); }
+  [[nodiscard]] std::uint64_t max_splits() const {
+    return run_.max_splits.value_or(default_splits::penetration);
+  }
   void note(Outcome outcome) { budget_spent_ = budget_spent_ || outcome == Outcome::budget_spent; }
   // For one query of the search.
   [[nodiscard]] Run each() const { return {.monitor = &monitor_, .max_splits = max_splits()}; }

@@ -18,8 +18,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 20'000;
-
 // A rounding more or less on a number of some roundings.
 double lowered(double x) {
   return std::isfinite(x) ? x - (16 * unit_roundoff * std::fabs(x) + underflow_error) : x;
@@ -44,7 +42,7 @@ class RaySearch {
       : surface_(surface),
         options_(options),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)) {
+        max_splits_(run.max_splits.value_or(default_splits::ray)) {
     const double precision = options.absolute.value_or(share_of_size(1e-6, surface.size()));
     require_length(precision, "the precision of rays");
     precision_ = surface.scale().apply(precision);

@@ -24,8 +24,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 constexpr auto verdict_names = std::to_array<Named<SelfVerdict>>({{"clear", SelfVerdict::clear},
                                                                   {"intersecting", SelfVerdict::intersecting},
                                                                   {"near", SelfVerdict::near},
@@ -109,7 +107,7 @@ class SelfSearch {
         run_(run),
         monitor_(monitor_of(run)),
         complex_(surface),
-        budget_(run.max_splits.value_or(default_splits)) {
+        budget_(run.max_splits.value_or(default_splits::self_contact)) {
     if (options.within) {
       answer_.radius = options.radius.value_or(
           std::min(default_radius * *options.within, std::numeric_limits<double>::max()));
@@ -150,7 +148,7 @@ class SelfSearch {
     const PowerOfTwo scale = surface_.scale();
     NearnessOptions wanted{.tolerance = std::min(enlarged(scale.apply(*options_.within)), 64.0),
                            .radius = std::min(scale.apply(answer_.radius), 1e100),
-                           .budget = run_.max_splits.value_or(default_splits),
+                           .budget = run_.max_splits.value_or(default_splits::self_contact),
                            .levels = options_.levels + further_levels,
                            .threads = run_.threads};
     if (scale.exact(*options_.within)) wanted.tolerance = std::min(scale.apply(*options_.within), 64.0);

@@ -9,7 +9,7 @@ namespace snug {
 namespace {
 
 // More than the roundings of any of these sums, relative to their terms.
-constexpr double noise = 0x1p-44;
+constexpr double turn_noise = 0x1p-44;
 
 }  // namespace
 
@@ -26,17 +26,17 @@ SweptMotion::SweptMotion(const PieceMotion& motion) {
   axis_ = std::copysign(1.0, piece.radians) * motion.axis();
   velocity_ = piece.velocity;
   turning_ = piece.turning;
-  rise_ = enlarged(std::fabs(dot(axis_, turning_)) + noise * length(turning_));
+  rise_ = enlarged(std::fabs(dot(axis_, turning_)) + turn_noise * length(turning_));
 }
 
-double SweptMotion::across(const Vector3& v) const { return length(cross(axis_, v)) + noise; }
+double SweptMotion::across(const Vector3& v) const { return length(cross(axis_, v)) + turn_noise; }
 
 double SweptMotion::lever(const OwnBall& ball) const {
   if (rate_ == 0) return 0;
   const Vector3 own = ball.centre - Point3{}, turned = from_.rotate(own), t = from_.offset();
   const Vector3 at = rate_ * cross(axis_, turned + (t - about_)) + turning_;
   const double terms = rate_ * (3 * length(own) + length(t) + length(about_)) + length(turning_);
-  return enlarged(length(at) + rate_ * ball.radius * (1 + 2 * from_.defect()) + noise * terms);
+  return enlarged(length(at) + rate_ * ball.radius * (1 + 2 * from_.defect()) + turn_noise * terms);
 }
 
 double SweptMotion::lever_at(const Point3& place, double radius, double s) const {
@@ -44,7 +44,7 @@ double SweptMotion::lever_at(const Point3& place, double radius, double s) const
   const Vector3 at = rate_ * cross(axis_, arm) + turning_;
   const double terms =
       rate_ * (length(place - Point3{}) + length(about_) + s * length(velocity_)) + length(turning_);
-  return enlarged(length(at) + rate_ * radius + noise * terms);
+  return enlarged(length(at) + rate_ * radius + turn_noise * terms);
 }
 
 double SweptHeights::bending(const Vector3& w, double doubt) const {
@@ -66,8 +66,8 @@ double SweptHeights::bending(const Vector3& w, double doubt, std::size_t side) c
   }
   // Of the other's points against what moves with `velocity`.
   const Vector3 against = other.velocity() - own.velocity();
-  const double speed = length(against) * (1 + noise) +
-                       noise * (length(own.velocity()) + length(other.velocity())) + levers[1 - side] +
+  const double speed = length(against) * (1 + turn_noise) +
+                       turn_noise * (length(own.velocity()) + length(other.velocity())) + levers[1 - side] +
                        2 * other.rise();
   const double around = balls[1 - side].radius * (1 + 0x1p-20) + half_step * speed;
   sum += own.rate() * (across * (2 * speed + own.lever_at(centres[1 - side], around, time)) + 2 * own.rise());

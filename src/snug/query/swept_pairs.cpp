@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t neither = 2;
 // Directions that were normalized and turned are no longer than this.
-constexpr double longest = 1 + 0x1p-20;
+constexpr double length_slack = 1 + 0x1p-20;
 // Base triangles that are nearer for their size are taken in double precision.
 constexpr double near_for_single = 0x1p-14;
 
-double radius_of(const Obb& box) { return length(box.half) * longest; }
+double radius_of(const Obb& box) { return length(box.half) * length_slack; }
 
 // Upper bound of dot(u, x) over the box, but for roundings.
 double reach(const Obb& box, const Vector3& u) {
@@ -97,7 +97,7 @@ SweptPairs::Sample SweptPairs::sample(double time) const {
              .defect = at.pose.defect()};
     deviations += at.deviation(enlarged(max_abs(ball.centre - Point3{}) + ball.radius));
     centres[s] = at.pose.apply(ball.centre);
-    radii += ball.radius * longest + 0x1p-40 * length(centres[s] - Point3{});
+    radii += ball.radius * length_slack + 0x1p-40 * length(centres[s] - Point3{});
     roundings += 8 * frame.largest_apply_error();
     double rows = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -106,7 +106,7 @@ SweptPairs::Sample SweptPairs::sample(double time) const {
     turns[s] = enlarged(spatial_error(rows) + bodies_[s].motion.closing_growth() + 16 * unit_roundoff);
   }
   // The difference of S(s) and M(s) counts twice: heights are of S(s), and M(s) is to be separated.
-  const double doubt = enlarged(longest * (deviations + 2 * closing_));
+  const double doubt = enlarged(length_slack * (deviations + 2 * closing_));
   const double widest = enlarged(length(centres[1] - centres[0]) + radii);
   result.place_doubt = doubt;
   result.turn_doubt = turns;
@@ -186,12 +186,12 @@ double SweptPairs::height(const Sample& at, const Pair& pair, std::size_t side, 
   if (node.bounded()) {
     const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
     const double of_record = dot(own, node.boxes->origin() - Point3{}) + record.extent(own) +
-                             (1 + 2 * frame.defect) * longest * record.error();
+                             (1 + 2 * frame.defect) * length_slack * record.error();
     most = std::min(most, of_record);
   }
   if (pair.exact) {
     const OffsetTriangle& triangle = pair.triangles[side];
-    most = std::min(most, reach(triangle, own) + (1 + 2 * frame.defect) * longest * triangle.radius);
+    most = std::min(most, reach(triangle, own) + (1 + 2 * frame.defect) * length_slack * triangle.radius);
   }
   return frame.scale * most + dot(w, frame.translation);
 }

@@ -23,8 +23,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 5'000'000;
-
 using Index = TriangleComplex::Index;
 
 // Tolerances below these, for coordinates from 1 to 2, are refused: rounding would take too much of them.
@@ -670,7 +668,7 @@ class CountSearch {
         limits_(limits),
         run_(run),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)),
+        max_splits_(run.max_splits.value_or(default_splits::tessellate)),
         max_triangles_(std::min(*options.max_triangles, max_splits_)) {}
 
   Tessellation run() {
@@ -756,7 +754,7 @@ Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& op
   const Limits limits = limits_of(surface, options);
   if (options.max_triangles) return CountSearch(surface, options, limits, run).run();
   MeshRefinement refinement(surface, options, limits, run);
-  const bool reached = refinement.run(run.max_splits.value_or(default_splits));
+  const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
   Tessellation result = refinement.result();
   result.outcome = outcome_of(reached, true);
   return result;
@@ -771,7 +769,7 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   }
   limits.tolerance = *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
   MeshRefinement refinement(surface, options, limits, run);
-  const bool reached = refinement.run(run.max_splits.value_or(default_splits));
+  const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
   LocalTessellation result;
   result.mesh = refinement.result(&result.errors);
   result.mesh.outcome = outcome_of(reached, true);

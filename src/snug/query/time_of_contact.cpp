@@ -18,8 +18,6 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t default_splits = 1'000'000;
-
 // Precision of distances: of the distance, and of the tolerance.
 constexpr double relative = 0.25, share_of_tolerance = 0.125;
 // The least share of it, where surfaces come together slowly while they move fast.
@@ -59,7 +57,7 @@ class FirstContactSearch {
       : body_{MovingBody(a), MovingBody(b)},
         options_(options),
         monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits)),
+        max_splits_(run.max_splits.value_or(default_splits::time_of_contact)),
         tolerance_(*options.tolerance),
         size_(share_of_size(1, a.model.surface().size(), b.model.surface().size())),
         duration_(std::max(body_[0].duration(), body_[1].duration())) {

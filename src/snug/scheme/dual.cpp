@@ -9,7 +9,7 @@ namespace snug {
 namespace {
 
 // A mask weights the corners of a face of n vertices for the one that moves: its own first, then around.
-using Mask = std::vector<Interval> (*)(std::size_t n);
+using CornerMask = std::vector<Interval> (*)(std::size_t n);
 
 // a_0 = 1/4 + 5/(4n), a_i = (3 + 2 cos(2 pi i/n)) / (4n).  [DooSabin78]
 std::vector<Interval> doo_sabin_mask(std::size_t n) {
@@ -34,7 +34,7 @@ std::vector<Interval> midedge_mask(std::size_t n) {
 
 class DualRules : public SchemeRules {
  public:
-  DualRules(const SchemeFacts& facts, Mask mask) : SchemeRules(facts), mask_(mask) {}
+  DualRules(const SchemeFacts& facts, CornerMask mask) : SchemeRules(facts), mask_(mask) {}
 
   // There are no faces to make at what is no manifold.
   [[nodiscard]] bool answers(DefectKind kind) const override { return is_legal(kind); }
@@ -152,7 +152,7 @@ class DualRules : public SchemeRules {
     out.end_row();
   }
 
-  Mask mask_;
+  CornerMask mask_;
 };
 
 // Most faces at a vertex and vertices of a face. A step of Doo-Sabin takes the square of that in products, and with

@@ -20,7 +20,7 @@ constexpr unsigned edge_levels = 8;
 constexpr unsigned probe_levels = 16;
 // Least sine of the angle between the normal of a base triangle and an edge of the limit triangle: they are
 // across each other but for what the planes of the two triangles differ.
-constexpr double min_sine = 0.5;
+constexpr double min_edge_sine = 0.5;
 
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
 template <class Visit>
@@ -72,7 +72,7 @@ CrossingTest::CrossingTest(const Piece& piece, const Heights& heights) {
     const Vector3 edge = corners[(k + 1) % 3] - corners[k];
     // Of an edge nearly along the normal the product is mostly rounding: then it is not across either.
     const Vector3 along = normalized(edge), inward = cross(normal_, along);
-    if (!(length(inward) > min_sine)) return;
+    if (!(length(inward) > min_edge_sine)) return;
     strip.inward = normalized(inward);
     strip.from = corners[k];
     // Both ends of the edge belong to its curve: the exact corners are within their error of these.

@@ -15,7 +15,7 @@ namespace {
 // Factor that covers a few roundings of a bound.
 constexpr double safely = 1 + 0x1p-30;
 // Slopes above this are not worth a bound; sines of the angle between pieces below that are none.
-constexpr double max_slope = 0.5, min_sine = 1e-5, direction_error = 1e-9;
+constexpr double max_slope = 0.5, min_cut_sine = 1e-5, direction_error = 1e-9;
 // The share of its distance from a zero that a step may leave, and how many are made.
 constexpr double max_contraction = 0.9;
 constexpr unsigned max_steps = 80;
@@ -46,8 +46,8 @@ double widest(const std::vector<Vector3>& vectors, double error, const Vector3& 
          safely;
 }
 
-Extent extent_of(const std::vector<Vector3>& points, double error, const Point3& origin, double origin_error,
-                 const Vector3& w) {
+Extent extent_of_net(const std::vector<Vector3>& points, double error, const Point3& origin,
+                     double origin_error, const Vector3& w) {
   Extent extent;
   double largest = max_abs(origin - Point3{});
   for (const Vector3& p : points) {
@@ -204,7 +204,7 @@ void PlacedPiece::bound_box() {
 }
 
 Extent PlacedPiece::extent(const Vector3& w) const {
-  return extent_of(net_, point_error_, origin_, origin_error_, w);
+  return extent_of_net(net_, point_error_, origin_, origin_error_, w);
 }
 
 Vector3 PlacedPiece::at(TriangleParameter at) const {
@@ -321,7 +321,7 @@ class PathAgainstPiece {
   [[nodiscard]] bool apart(std::size_t edge) const {
     const auto parts = [&](const Vector3& w) {
       return w != Vector3{} &&
-             parted(snug::extent_of(from_.edge(edge), from_.error(), from_.origin(), from_.origin_error(), w),
+             parted(extent_of_net(from_.edge(edge), from_.error(), from_.origin(), from_.origin_error(), w),
                     piece_.extent(w));
     };
     if (parts(piece_.normal())) return true;
@@ -545,7 +545,7 @@ PieceCut cut(const PlacedPiece& a, const PlacedPiece& b) {
   if (!a.bounded_slope() || !b.bounded_slope()) return {};
   const Vector3 across = cross(a.normal(), b.normal());
   const double sine = length(across), cosine = std::fabs(dot(a.normal(), b.normal()));
-  if (!(sine > min_sine)) return {};
+  if (!(sine > min_cut_sine)) return {};
   const Vector3 along = normalized(across);
   if (parts(along)) return {PieceCut::State::apart, {}, {}};
   // The share of a chord of both pieces that is across `along`.

@@ -15,7 +15,7 @@ namespace {
 using Points = std::array<Point3, 6>;
 using Corners = std::array<TriangleParameter, 3>;
 
-constexpr Corners whole{TriangleParameter{0, 0}, {1, 0}, {0, 1}};
+constexpr Corners whole_triangle{TriangleParameter{0, 0}, {1, 0}, {0, 1}};
 
 std::array<Corners, 4> quarters(const Corners& of) {
   Corners m;
@@ -359,7 +359,7 @@ double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot
         QuadraticTriangle part;
         Corners at;
       };
-      std::vector<Open> open{{q, whole}};
+      std::vector<Open> open{{q, whole_triangle}};
       while (!open.empty()) {
         const Open next = open.back();
         open.pop_back();
@@ -408,7 +408,7 @@ bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& no
   const bool small = other.radius <= std::max(ball.radius, 2 * q.error + 4 * distance_rounding);
   const double bent = std::max({max_abs(bend(q, 0)), max_abs(bend(q, 1)), max_abs(bend(q, 2))});
   if (small && bent <= flat) return true;
-  for (const Corners& quarter : quarters(whole)) {
+  for (const Corners& quarter : quarters(whole_triangle)) {
     if (may_meet(part, ball, normal, restricted(q, quarter), curved, flat)) return true;
   }
   return false;

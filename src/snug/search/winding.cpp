@@ -12,7 +12,7 @@
 namespace snug {
 namespace {
 
-constexpr std::uint64_t max_splits = 20'000;
+constexpr std::uint64_t max_ray_splits = 20'000;
 
 // Of no particular slope to anything that people model.
 constexpr std::array<Vector3, 8> directions{{{0.8236391, 0.2941752, 0.4848613},
@@ -95,7 +95,7 @@ class Winding {
       if (node.bounded()) {
         monitor_.checkpoint();
         const bool last = !SurfaceWorkspace::can_open(node);
-        on_surface_ = last ? !(gap_of(node) > 0) : ++splits > max_splits;
+        on_surface_ = last ? !(gap_of(node) > 0) : ++splits > max_ray_splits;
         if (on_surface_) return std::nullopt;
         const bool added = last ? ray.add(corners(node)) : add_fillers(node, ray);
         if (!added) return std::nullopt;
@@ -136,7 +136,7 @@ class Winding {
         open.add({node, nearer});
         continue;
       }
-      if (node.bounded() && ++splits > max_splits) return 0;
+      if (node.bounded() && ++splits > max_ray_splits) return 0;
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
       WideNode::Distances gaps;
       opened.boxes->distances(point_, error_, gaps);

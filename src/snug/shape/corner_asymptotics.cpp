@@ -16,7 +16,7 @@ namespace {
 // Steps after which a kind comes again, at most: one, but where faces around it are named in turns.
 constexpr std::size_t max_period = 24;
 // Largest matrices whose powers are taken for a smaller factor, or to find one at all.
-constexpr std::size_t common_size = 80, largest_size = 600;
+constexpr std::size_t common_size = 80, largest_power = 600;
 
 // By how much at most the extent of points in any direction grows when they are replaced by rows of them: for
 // rows a and b it is half the sum of |a - b|.
@@ -124,7 +124,7 @@ double repeated(DenseRows period, double other, const Power& power) {
   for (unsigned times = 1;; times *= 2) {
     const double growth = enlarged(power(period.growth()));
     if (growth < 1) best = std::min(best, enlarged(other * sum / (1 - growth)));
-    const std::size_t limit = best == INFINITY ? largest_size : common_size;
+    const std::size_t limit = best == INFINITY ? largest_power : common_size;
     if (period.columns() > limit || times >= most || (best < INFINITY && times >= enough)) return best;
     sum *= 1 + growth;
     period.square();

@@ -18,9 +18,9 @@ namespace {
 
 // Times that a polynomial is split where its coefficients have no cone; levels until sharpness has decayed, and
 // rings around a corner that are bounded one by one.
-constexpr unsigned max_splits = 2, transient_levels = 6, net_levels = 2, max_rings = 50;
+constexpr unsigned max_splits = 2, transient_levels = 6, net_levels = 2, max_cone_rings = 50;
 // Of a net that stands for all further rings: its error against its size, and the angle that this adds.
-constexpr double max_error = 1.0 / 512, max_widening = 1.0 / 32;
+constexpr double max_net_error = 1.0 / 512, max_widening = 1.0 / 32;
 // Angles between the axis of a first trial and vectors of the second one have larger cosines.
 constexpr double min_cosine = 1.0 / 64;
 constexpr int axis_steps = 24;
@@ -33,7 +33,7 @@ struct Ball {
 
 // Differences along two edges of the parameters' triangle, as polynomials by axis, scaled to about 1.
 template <std::size_t degree>
-struct Derivatives {
+struct EdgeDerivatives {
   using Polynomial = Bernstein<Domain::triangle, degree - 1>;
   std::array<Polynomial, 3> u, v;
   double longest = 0;  // of all coefficients' vectors
@@ -85,7 +85,7 @@ class NormalBalls {
     const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
     if (!axis_) last_rings_.push_back(0);
     const std::size_t place = axis_ ? next_tip_++ : last_rings_.size() - 1;
-    for (unsigned ring = 0; ring < max_rings; ++ring) {
+    for (unsigned ring = 0; ring < max_cone_rings; ++ring) {
       centre_at(corner, patch);
       if (ring >= last_rings_[place]) {
         const double far = add_limit(tip, patch, corner);
@@ -106,7 +106,7 @@ class NormalBalls {
   // too large it is.
   double add_limit(const CharacteristicMap& tip, const Patch& patch, unsigned corner) {
     const CharacteristicMap::LimitNets limit = tip.limit_nets(patch);
-    const double error = limit.net.error / (max_error * limit.net.largest);
+    const double error = limit.net.error / (max_net_error * limit.net.largest);
     if (!(error <= 1)) return std::isfinite(error) ? error : 0x1p8;
     const std::size_t before = balls_.size();
     const bool was_complete = complete_;
@@ -176,11 +176,11 @@ class NormalBalls {
   template <std::size_t degree>
   bool add_coefficients(const Patch& patch, const Patch* dominant) {
     for (std::size_t part = 0; part < patch.kind->form().parts; ++part) {
-      Derivatives<degree> d;
+      EdgeDerivatives<degree> d;
       const PowerOfTwo scale = differences(patch, part, nullptr, d);
       if (!(d.longest > 0)) return complete_ = false;
       if (dominant != nullptr) {
-        Derivatives<degree> other;
+        EdgeDerivatives<degree> other;
         static_cast<void>(differences(*dominant, part, &scale, other));
         d.longest = std::max(d.longest, other.longest);
       }
@@ -192,8 +192,8 @@ class NormalBalls {
   // Scaled by this power of two, or by one of their own.
   template <std::size_t degree>
   static PowerOfTwo differences(const Patch& patch, std::size_t part, const PowerOfTwo* given,
-                                Derivatives<degree>& d) {
-    using Polynomial = typename Derivatives<degree>::Polynomial;
+                                EdgeDerivatives<degree>& d) {
+    using Polynomial = typename EdgeDerivatives<degree>::Polynomial;
     const BezierRows& form = patch.kind->form();
     std::array<Vector3, bezier_count(degree)> points;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -225,8 +225,8 @@ class NormalBalls {
   }
 
   template <std::size_t degree>
-  bool add_products(const Derivatives<degree>& d) {
-    using Polynomial = typename Derivatives<degree>::Polynomial;
+  bool add_products(const EdgeDerivatives<degree>& d) {
+    using Polynomial = typename EdgeDerivatives<degree>::Polynomial;
     using Product = ProductOf<Polynomial, Polynomial>;
     std::array<Product, 3> normal{};
     for (std::size_t a = 0; a < 3; ++a) {

@@ -11,7 +11,7 @@ namespace {
 
 // Levels that a patch at an extraordinary corner is split before what is left is bounded by its control points,
 // and patches that pass.
-constexpr unsigned tip_levels = 6, transient_levels = 2;
+constexpr unsigned tip_levels = 6, passing_levels = 2;
 
 // Derivatives along the edges of the parameters: any way from a corner, or between two points, is the image of
 // a segment whose direction is a mean of those of two, or three, edges and their opposites.
@@ -85,7 +85,7 @@ bool is_tip(const Kind& kind) {
 
 PatchLengths patch_lengths(const Patch& patch) {
   if (patch.kind->polynomial()) return of_polynomial(patch);
-  const double d = diameter_of(patch, is_tip(*patch.kind) ? tip_levels : transient_levels);
+  const double d = diameter_of(patch, is_tip(*patch.kind) ? tip_levels : passing_levels);
   return {{d, d, d}, {d, d, d}, d};
 }
 

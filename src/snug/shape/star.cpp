@@ -22,9 +22,9 @@ constexpr int directions = 12, tried_layouts = 4;
 // Edges of the border that are less steep, and lead to its top or bottom, are laid out level there.
 constexpr std::array<double, 3> level_slopes{0, 0.35, 0.6};
 // Levels that a piece is split to bound its coefficients.
-constexpr unsigned polynomial_levels = 2, transient_levels = 6;
+constexpr unsigned polynomial_levels = 2, decay_levels = 6;
 // Of a net that stands for all further rings, against its size: more would hardly do.
-constexpr double max_error = 0.02;
+constexpr double max_net_share = 0.02;
 // Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
 constexpr double layout_grain = 0x1p-20;
 
@@ -43,7 +43,7 @@ struct FlatSector {
 };
 
 // Differences along one edge of the parameters' triangle, by Bezier points.
-struct Derivatives {
+struct FlatDerivatives {
   std::size_t count = 0;
   std::array<Point2, bezier_count(max_degree - 1)> u, v;
   double largest = 0;
@@ -52,8 +52,8 @@ struct Derivatives {
 
 using BezierPoints = std::array<Point2, bezier_count(max_degree)>;
 
-Derivatives derivatives_of(const BezierPoints& points, std::size_t degree, double error) {
-  Derivatives result;
+FlatDerivatives derivatives_of(const BezierPoints& points, std::size_t degree, double error) {
+  FlatDerivatives result;
   for (std::size_t j = 0; j < degree; ++j) {
     for (std::size_t i = 0; i + j < degree; ++i) {
       const Point2 at = points[bezier_index(degree, i, j)];
@@ -70,7 +70,7 @@ Derivatives derivatives_of(const BezierPoints& points, std::size_t degree, doubl
 }
 
 // Condition (ii): the determinant's coefficients, each the sum of those of two orders.
-bool turns_left(const Derivatives& d) {
+bool turns_left(const FlatDerivatives& d) {
   const double limit = enlarged(4 * (2 * d.error * d.largest + d.error * d.error) +
                                 gamma_bound(6) * 4 * d.largest * d.largest);
   for (std::size_t k = 0; k < d.count; ++k) {
@@ -89,7 +89,7 @@ struct Turn {
 };
 
 // Conditions (i) and (iii) of a polynomial on a triangle with these sides from its corner 0, in the layout.
-bool grows(const Derivatives& d, const Turn& turn, Point2 a, Point2 b) {
+bool grows(const FlatDerivatives& d, const Turn& turn, Point2 a, Point2 b) {
   // |c| + |s| < 1.5.
   const double error = enlarged(1.5 * d.error + gamma_bound(4) * 1.5 * d.largest), largest = 1.5 * d.largest;
   const double reach = std::fabs(a.y) + std::fabs(b.y);
@@ -133,8 +133,8 @@ class SectorCheck {
   [[nodiscard]] bool holds(const Patch& patch, unsigned border) {
     // The star's axes suit corners of its own pieces alone.
     const CharacteristicMap* const tip = map_of(*patch.kind);
-    if (tip != nullptr) return tip_holds(*tip, patch, border, 1, transient_levels);
-    return holds(patch, border, 1, patch.kind->polynomial() ? 1 : transient_levels);
+    if (tip != nullptr) return tip_holds(*tip, patch, border, 1, decay_levels);
+    return holds(patch, border, 1, patch.kind->polynomial() ? 1 : decay_levels);
   }
 
  private:
@@ -171,7 +171,7 @@ class SectorCheck {
     const CornerRings rings(tip, patch);
     for (std::size_t ring = 0; ring < rings.count(); ++ring) {
       const Patch further = rings.all_further(ring);
-      if (further.error < max_error * further.largest && ring_holds(further)) return true;
+      if (further.error < max_net_share * further.largest && ring_holds(further)) return true;
       if (!ring_holds(rings.net(ring))) return false;
       border &= ~(1u << ((corner + 1) % 3));
     }
@@ -199,7 +199,7 @@ class SectorCheck {
         const Vector3 p = form.rows.apply<Vector3>(part * count + i, patch.points);
         points[i] = {p.x, p.y};
       }
-      const Derivatives d = derivatives_of(points, form.degree, error);
+      const FlatDerivatives d = derivatives_of(points, form.degree, error);
       if (condition_.turn == nullptr) {
         if (!turns_left(d)) return false;
         continue;
