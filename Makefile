@@ -115,8 +115,9 @@ check-all:  ## these, and what changes rarely: other programs, packages, the pag
 format:  ## rewrite C++ files in the project's format
 	@scripts/check_format --fix
 
-tidy: build  ## clang-tidy over the library
-	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
+tidy: install-packages  ## clang-tidy over the library
+	@cmake --preset dev > /dev/null
+	@run-clang-tidy -quiet -j $(JOBS) -p build/dev 'src/snug/.*\.cpp$$'
 
 docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
 	@$(call build,release,snug_command snug_research)

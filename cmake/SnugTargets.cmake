@@ -26,15 +26,31 @@ endif()
 set(snug_standard_headers <algorithm> <array> <cmath> <functional> <memory> <mutex> <optional> <span> <string> <unordered_map>
                           <vector>)
 
-# The library and the tests compile several files in a unit, which takes half of what these take apart; names that a file of the
-# library keeps to itself are unique in the library. Debug builds, and the preset web, compile each file by itself.
+# The library and the tests compile several files in a unit, which takes much less than these do apart. Debug builds, and the
+# preset web, compile each file by itself.
 set(snug_unity ON)
 if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR CMAKE_DISABLE_PRECOMPILE_HEADERS)
   set(snug_unity OFF)
 endif()
 
+#   snug_units(TARGET)   what TARGET compiles together: up to six files of a room, which see each other's private names
+function(snug_units target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${snug_unity} UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH room)
+    string(MAKE_C_IDENTIFIER "room${room}" room)
+    math(EXPR ${room} "${${room}} + 1")
+    math(EXPR unit "(${${room}} - 1) / 6")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${room}${unit})
+  endforeach()
+endfunction()
+
 # With clang and sanitizers optimizing is most of what a file takes to compile. Of what runs briefly:
-set(snug_quickly_compiled $<$<CONFIG:RelWithDebInfo>:-O0>)
+set(snug_quickly_compiled "")
+if(CMAKE_CXX_FLAGS MATCHES "-DSNUG_SANITIZED")
+  set(snug_quickly_compiled -O0)
+endif()
 
 #   snug_precompile(TARGET <header>...)   what TARGET compiles
 function(snug_precompile target)
@@ -58,12 +74,13 @@ function(snug_library)
   find_package(Threads REQUIRED)
   find_package(nlohmann_json REQUIRED)  # headers only: users of the library do not need it
   add_library(snug_objects OBJECT ${ARGN})
-  set_target_properties(snug_objects PROPERTIES UNITY_BUILD ${snug_unity} UNITY_BUILD_BATCH_SIZE 6 POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+  set_target_properties(snug_objects PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                                                 VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy nlohmann_json::nlohmann_json
                                              Threads::Threads)
   snug_precompile(snug_objects)
+  snug_units(snug_objects)
 
   add_library(snug $<TARGET_OBJECTS:snug_objects>)
   add_library(snug::snug ALIAS snug)

@@ -122,7 +122,7 @@ PieceCount count_pieces(const CurveSet& curves, BoundWay way, const CountOptions
                         const WorkMonitor& monitor) {
   require_value(way == BoundWay::rows || way == BoundWay::control_box,
                 "pieces: curves have bounding rows and control boxes only");
-  const PowerOfTwo back = curves.scale().inverse();
+  const PowerOfTwo back = curves.edges().scale().inverse();
   BoundingPoints scratch;
   const auto size_of = [&](const CurvePiece& piece) -> Size {
     if (way == BoundWay::control_box) return size_of_box(control_box(piece, scratch), piece.error, back);
@@ -134,7 +134,7 @@ PieceCount count_pieces(const CurveSet& curves, BoundWay way, const CountOptions
   Counter<CurvePiece> counter(options, 2, size_of, monitor);
   for (std::size_t e = 0; e < curves.edge_count(); ++e) {
     counter.visit(
-        curves.piece(EdgeId(e)), 0, [](const CurvePiece&) { return false; },
+        curves.edges().piece(EdgeId(e)), 0, [](const CurvePiece&) { return false; },
         [](const CurvePiece&, double) {});
   }
   return counter.count();

@@ -35,8 +35,8 @@ ControlMesh polyline_on_cubic(bool closed, std::uint64_t seed) {
 }
 
 std::array<Thicknesses, 2> thicknesses(const CurveSet& curves, EdgeId edge, unsigned levels) {
-  const PowerOfTwo back = curves.scale().inverse();
-  CurvePiece piece = curves.piece(edge);
+  const PowerOfTwo back = curves.edges().scale().inverse();
+  CurvePiece piece = curves.edges().piece(edge);
   std::array<Thicknesses, 2> result;
   BoundingPoints points;
   for (unsigned level = 0; level <= levels; ++level, piece = split(piece, 0)) {

@@ -1,9 +1,8 @@
-#include <snug/query/bound.h>
-
 #include <fmt/core.h>
 #include <picture/polyhedron.h>
 #include <snug/bound.h>
 #include <support/atomic_file.h>
+#include <support/scaling.h>
 
 #include <algorithm>
 #include <numbers>
@@ -71,7 +70,7 @@ void write_piece(JsonWriter& json, const Surface& surface, const PatchEnclosure&
 
 void write_piece(JsonWriter& json, const CurveSet&, const CurveEnclosure& piece) {
   json.begin_object().field("edge", piece.edge.index());
-  write_enclosure(json, piece, piece.path.text(), piece.path.level());
+  write_enclosure(json, piece, piece.piece, piece.level);
   json.end_object();
 }
 

@@ -191,6 +191,7 @@ ExitStatus run(const Options& options) {
 
 Command closest_command() {
   auto options = std::make_shared<Options>();
+  options->max_splits = default_splits::closest_point;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--points FILE", &options->points,

@@ -1,7 +1,7 @@
 #include "coarsen.h"
 
 #include <meshoptimizer.h>
-#include <snug/deviation.h>
+#include <snug/distance.h>
 
 #include <algorithm>
 #include <array>

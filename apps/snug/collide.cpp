@@ -240,6 +240,7 @@ ExitStatus run(const Options& options) {
 
 Command collide_command() {
   auto options = std::make_shared<Options>();
+  options->max_splits = default_splits::collide;
   OptionList list;
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Surfaces this close may be reported as within; mesh units, or percent of the larger mesh");

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <snug/mesh/control_mesh.h>
-#include <snug/surface/curve_set.h>
+#include <snug/curves.h>
 
 #include "common.h"
 

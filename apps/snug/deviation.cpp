@@ -1,4 +1,4 @@
-#include <snug/deviation.h>
+#include <snug/distance.h>
 
 #include <algorithm>
 #include <array>

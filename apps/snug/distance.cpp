@@ -132,6 +132,7 @@ ExitStatus run(const Options& options) {
 
 Command distance_command() {
   auto options = std::make_shared<Options>();
+  options->max_splits = default_splits::distance;
   OptionList list;
   list.add(Group::own, "--absolute LENGTH", &options->precision,
            "Largest width of the interval; mesh units, or percent of the larger mesh")

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/surface/evaluate.h>
-
 namespace snug::command {
 namespace {
 
@@ -56,7 +54,7 @@ std::vector<Tube> DrawnCurves::tubes(double deviation, double radius, const Work
   std::size_t edge = 0;
   for (std::size_t p = 0; p + 1 < starts_.size(); ++p) {
     monitor.checkpoint();
-    const auto point = [&](double t) { return units_(pose_, evaluate(*curves_, EdgeId(edge), t).position); };
+    const auto point = [&](double t) { return units_(pose_, evaluate(*curves_, EdgeId(edge), t).point); };
     std::vector<Point3> chain{point(0)};
     for (std::size_t i = starts_[p]; i + 1 < starts_[p + 1]; ++i, ++edge) {
       const auto steps = static_cast<unsigned>(steps_for(bends_[edge], deviation));

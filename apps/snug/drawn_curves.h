@@ -1,7 +1,7 @@
 #pragma once
 
 #include <picture/tube.h>
-#include <snug/surface/curve_set.h>
+#include <snug/curves.h>
 
 #include "scene_builder.h"
 

@@ -2,12 +2,12 @@
 #include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/hull.h>
+#include <snug/inspect.h>
 #include <support/atomic_file.h>
 #include <support/error.h>
 
 #include "hulls_of_mesh.h"
 #include "length.h"
-#include "mesh_counts.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -109,7 +109,7 @@ ExitStatus run(const Options& options) {
   naming(options.mesh, [&] {
     how.error = parse_length(options.error, "--error").in_mesh_units(surface.size());
     require_closed(surface);
-    if (has_edges_of_many_faces(surface.mesh())) {
+    if (count_elements(surface.mesh(), surface.scheme()).many_sided_edges > 0) {
       throw InputError(InputProblem::refused,
                        "envelope: edges of more than two faces have no envelope; 'snug info' lists them");
     }
@@ -131,6 +131,7 @@ ExitStatus run(const Options& options) {
 
 Command envelope_command() {
   auto options = std::make_shared<Options>();
+  options->max_splits = default_splits::hull;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh of a solid (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");

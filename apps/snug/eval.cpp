@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <fmt/core.h>
-#include <snug/surface/evaluate.h>
+#include <snug/evaluate.h>
 #include <support/atomic_file.h>
 #include <support/read_file.h>
 #include "column_table.h"
@@ -88,7 +88,7 @@ struct CurveParameter {
   double t;
 };
 
-CurveSetPoint evaluate(const CurveSet& curves, const CurveParameter& at) {
+CurvePoint evaluate(const CurveSet& curves, const CurveParameter& at) {
   return evaluate(curves, EdgeId(at.edge), at.t);
 }
 
@@ -125,9 +125,8 @@ Columns columns_of(const CurveSet&) {
   return columns;
 }
 
-void write_point(const Output& output, const CurveSet&, const CurveParameter& at,
-                 const CurveSetPoint& point) {
-  const auto& [x, y, z] = point.position;
+void write_point(const Output& output, const CurveSet&, const CurveParameter& at, const CurvePoint& point) {
+  const auto& [x, y, z] = point.point;
   if (output.table) {
     output.table->add(at.edge);
     for (const double number :
@@ -139,7 +138,7 @@ void write_point(const Output& output, const CurveSet&, const CurveParameter& at
   Report& report = output.report;
   if (!report.json()) return report.text(fmt::format("{} {}  {} {} {}", at.edge, at.t, x, y, z));
   JsonWriter& json = report.write();
-  json.begin_object().field("edge", at.edge).field("t", at.t).field("point", point.position);
+  json.begin_object().field("edge", at.edge).field("t", at.t).field("point", point.point);
   json.field("error", point.error).field("tangent", point.tangent).end_object();
 }
 

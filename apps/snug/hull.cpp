@@ -91,6 +91,7 @@ ExitStatus run(const Options& options) {
 
 Command hull_command() {
   auto options = std::make_shared<Options>();
+  options->max_splits = default_splits::hull;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");

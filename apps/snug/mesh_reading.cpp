@@ -4,12 +4,11 @@
 
 #include <fmt/core.h>
 #include <snug/evaluate.h>
+#include <snug/inspect.h>
 #include <snug/mesh.h>
-#include <snug/query/smoothing_note.h>
-#include <snug/search/surface_data.h>
+#include <support/number.h>
 
 #include "curve.h"
-#include "mesh_counts.h"
 
 namespace snug::command {
 
@@ -84,7 +83,7 @@ void note_smoothing(const Surface& surface, const std::string& path, const Commo
   if (!note || surface.traits().local) return;
   if (options.sharp.empty()) {
     if (scheme != "auto") return;
-    const std::string line = smoothing_note(surface.data()->limit(), "--scheme", apart, options.threads);
+    const std::string line = smoothing_note(surface, "--scheme", apart, {.threads = options.threads});
     if (!line.empty()) note(path + ": " + line);
     return;
   }

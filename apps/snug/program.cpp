@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/bounds/fit_kernels.h>
+#include <snug/inspect.h>
 #include <support/error.h>
 
 #include "common.h"
@@ -55,8 +55,7 @@ int fail(ExitStatus status, std::string_view message) {
 
 int answer(const Program& program, const std::vector<std::string>& words) {
   set_program_name(program.name);
-  const std::string version =
-      std::string(program.name) + version_head + std::string(kernels::instruction_set()) + ")";
+  const std::string version = std::string(program.name) + version_head + std::string(instruction_set()) + ")";
   const Invocation wanted = read_command_line(program, words, version);
   if (wanted.command == nullptr) {
     wanted.status == ExitStatus::answered ? write_output(wanted.text) : to_standard_error(wanted.text);

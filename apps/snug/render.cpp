@@ -23,6 +23,7 @@
 #include "drawn_curves.h"
 #include "field_colours.h"
 #include "numbers.h"
+#include "patch_lattice.h"
 #include "pose.h"
 #include "progress_bar.h"
 #include "scene_builder.h"
@@ -204,7 +205,7 @@ struct Pieces {
 
 Pieces pieces_of(const Part& part) {
   if (const CurveSet* curves = part.curves()) return {curves->edge_count(), 2};
-  return {patch_count(*part.surface()), 4};
+  return {PatchLattice(*part.surface(), 1).patches().size(), 4};
 }
 
 // How many more enclosures than those without any split can be drawn. Refuses what is too much without a
@@ -265,7 +266,8 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
 std::vector<Point3> surface_points(const Options& options, std::span<const Part> parts,
                                    const PictureUnits& units, const WorkMonitor& monitor) {
   std::size_t patches = 0;
-  for (const Part& part : parts) patches += part.surface() ? patch_count(*part.surface()) : 0;
+  for (const Part& part : parts)
+    patches += part.surface() ? PatchLattice(*part.surface(), 1).patches().size() : 0;
   const std::uint32_t steps = patches > framing_points / 10 ? 1 : patches > framing_points / 150 ? 4 : 16;
   std::vector<Point3> points;
   for (const Part& part : parts) {

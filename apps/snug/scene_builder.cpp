@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include <picture/palette.h>
-#include <snug/search/surface_data.h>
-#include <snug/surface/evaluate.h>
 #include <support/direction.h>
 #include <support/parallel.h>
 
+#include "patch_lattice.h"
+
 namespace snug::command {
+
 PictureUnits::PictureUnits(std::span<const PlacedMesh> parts) {
   double largest = 0;
   for (const PlacedMesh& part : parts) {
@@ -50,39 +51,16 @@ Point3 PictureUnits::origin_in_mesh(const Motion& pose) const {
   return Point3{} + scale_.inverse().apply(transposed_times(rows_of(pose), from));
 }
 
-const LimitSurface& limit_of(const Surface& surface) { return surface.data()->limit(); }
-
-std::size_t patch_count(const Surface& surface) {
-  const LimitSurface& limit = limit_of(surface);
-  std::size_t count = 0;
-  for (std::size_t p = 0; p < limit.patch_count(); ++p) count += limit.has_patch(PatchId(p)) ? 1 : 0;
-  return count;
-}
-
 std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
                                  int threads, const WorkMonitor& monitor) {
-  const LimitSurface& surface = limit_of(part.surface());
-  std::vector<PatchId> patches;
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
-  }
-  const std::size_t points_a_patch = std::size_t{steps + 1} * (steps + 2) / 2;
-  std::vector<Point3> points(patches.size() * points_a_patch);
-  parallel_for(patches.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t rank = begin; rank < end; ++rank) {
-      monitor.checkpoint();
-      const PatchEvaluator evaluate_at(surface, patches[rank]);
-      std::size_t at = rank * points_a_patch;
-      for (std::uint32_t j = 0; j <= steps; ++j) {
-        for (std::uint32_t i = 0; i + j <= steps; ++i, ++at) {
-          // The far edge is met exactly: u + v rounds to at most 1.
-          const double v = static_cast<double>(j) / steps,
-                       u = std::fmin(static_cast<double>(i) / steps, 1 - v);
-          points[at] = units(part.pose(), evaluate_at(TriangleParameter{u, v}).point);
-        }
-      }
-    }
-  });
+  std::vector<Point3> points;
+  const PatchLattice lattice(part.surface(), steps);
+  lattice.evaluate(
+      part.surface(), {.threads = threads, .monitor = &monitor},
+      [](const Place& at, std::vector<Place>& asked) { asked.push_back(at); },
+      [&](std::span<const SurfacePoint> found) {
+        for (const SurfacePoint& x : found) points.push_back(units(part.pose(), x.point));
+      });
   return points;
 }
 
@@ -161,12 +139,18 @@ CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& unit
 
 void add_cage(PictureScene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
               Colour line_colour) {
-  const Topology& topology = limit_of(part.surface()).topology();
-  const auto place = [&](VertexId v) { return units(part.pose(), part.surface().mesh().points[v.index()]); };
-  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
-    const HalfEdge h = topology.half_of(EdgeId(e));
-    scene.lines.push_back({place(topology.from(h)), place(topology.to(h)), line_width, line_colour});
+  const ControlMesh& mesh = part.surface().mesh();
+  std::vector<std::pair<VertexId, VertexId>> edges;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      edges.push_back(std::minmax(face[k], face[k + 1 == face.size() ? 0 : k + 1]));
+    }
   }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const auto place = [&](VertexId v) { return units(part.pose(), mesh.points[v.index()]); };
+  for (const auto& [a, b] : edges) scene.lines.push_back({place(a), place(b), line_width, line_colour});
 }
 
 }  // namespace snug::command

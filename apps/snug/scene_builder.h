@@ -9,15 +9,11 @@
 #include <picture/polyhedron.h>
 #include <picture/scene.h>
 #include <snug/geometry.h>
-#include <snug/query/bound.h>
 #include <snug/run.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/surface.h>
+#include <support/scaling.h>
 
 namespace snug::command {
-
-[[nodiscard]] const LimitSurface& limit_of(const Surface& surface);
-/// How many of its patches have a limit surface.
-[[nodiscard]] std::size_t patch_count(const Surface& surface);
 
 /// A control mesh where it stands in the picture, and those of its vertices that count.
 /// Requires:  the mesh outlives it.

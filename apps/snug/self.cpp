@@ -1,4 +1,4 @@
-#include <snug/self_contact.h>
+#include <snug/contacts.h>
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 #include <support/atomic_file.h>
 
 #include "common.h"
@@ -46,15 +46,13 @@ ExitStatus run(const Options& options) {
     ProgressBar bar("subdividing " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
     if (curves) {
-      result = subdivide_curves(mesh, curve_degree(options.degree), options.level, options.limit,
-                                {.monitor = &monitor});
+      result = subdivided(CurveSet(std::move(mesh), curve_degree(options.degree)), options.level,
+                          options.limit, {.monitor = &monitor});
       return;
     }
     const SurfaceOptions how = surface_options(options, options.scheme, mesh);
     scheme = *how.scheme;
-    // Also of a mesh without a limit surface, which no Surface can have.
-    const SchemeOptions rules = rules_for(mesh, scheme, how.boundary);
-    result = subdivide(std::move(mesh), rules, options.level, options.limit, {.monitor = &monitor});
+    result = subdivided(std::move(mesh), options.level, options.limit, how, {.monitor = &monitor});
   });
   if (!curves && format_of(options.output).scheme) result.tags.scheme = scheme;
   AtomicFile file(options.output);

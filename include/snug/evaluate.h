@@ -66,18 +66,19 @@ struct SurfaceNormal {
 /// Source:    derivations/sharp_parts.md.
 [[nodiscard]] SNUG_API std::optional<double> limit_to_faces(const Surface& surface, const Run& run = {});
 
-/// The control mesh after `level` steps of subdivision; with `limit` the limit positions of its vertices, in
-/// double precision.
+/// A control mesh after `level` steps of subdivision, with the scheme and the boundary rule that a Surface with these
+/// options has; other options have no effect. With `limit` the limit positions of its vertices, in double precision. Also of
+/// meshes that have no limit surface.
 ///
 /// With `limit`, faces without a limit surface are left out, and so are vertices that only they use. In a dual
 /// scheme the limit position of a vertex is the middle of its patch.
 ///
 /// Guarantee: positions are within a few units in the last place of the largest coordinate, per level. The
 ///            sharpness of tags is reduced by the number of steps.
-/// Errors:    InputError: (refused) if the result has more than 2^31 faces; (unrepresentable) if a coordinate
+/// Errors:    InputError: (refused) for a mesh that these rules cannot subdivide, and if the result has more than 2^31 faces; (unrepresentable) if a coordinate
 ///            does not fit a double. Interrupted.
 /// Cost:      linear in the result.
-[[nodiscard]] SNUG_API ControlMesh subdivided(const Surface& surface, unsigned level, bool limit = false,
-                                              const Run& run = {});
+[[nodiscard]] SNUG_API ControlMesh subdivided(ControlMesh mesh, unsigned level, bool limit = false,
+                                              const SurfaceOptions& options = {}, const Run& run = {});
 
 }  // namespace snug

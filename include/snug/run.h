@@ -68,7 +68,7 @@ struct Run {
   std::optional<std::uint64_t> max_splits{};
 };
 
-/// What Run::max_splits is if it is not given.
+/// What Run::max_splits is if it is not given, in the unit that each function names under "Budget".
 namespace default_splits {
 inline constexpr std::uint64_t ray = 20'000, penetration = 20'000, contacts = 200'000, bound = 1'000'000,
                                closest_point = 1'000'000, collide = 1'000'000, distance = 1'000'000,

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <snug/bound.h>
-#include <snug/deviation.h>
+#include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/hull.h>
 #include <snug/measure.h>
@@ -455,7 +455,8 @@ PyMesh refined(const PySurface& self, const py::object& level, bool limit, const
   const std::uint64_t steps = std::min<std::uint64_t>(count_of(level, 0, "level"), 64);
   Call call(progress);
   return call.run([&](const Run& run) {
-    PyMesh result{subdivided(surface, static_cast<unsigned>(steps), limit, run)};
+    PyMesh result{subdivided(surface.mesh(), static_cast<unsigned>(steps), limit,
+                             {.scheme = surface.scheme(), .boundary = surface.boundary()}, run)};
     // At limit positions it is a control mesh no longer.
     result.mesh.tags.scheme = limit ? std::nullopt : std::optional(surface.scheme());
     return result;

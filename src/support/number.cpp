@@ -110,6 +110,13 @@ std::string text_at_most(double x, bool at_least) {
   return {text.data(), static_cast<std::size_t>(end - text.data())};
 }
 
+std::string text_of_length(double length, double size) {
+  if (!(size > 0)) return text_at_most(length, true);
+  // As enlarged() of geometry/rounding.h, which is none of this room's.
+  const double percent = length > 0 ? length / size * 100 * (1 + 0x1p-42) + 0x1p-1022 : 0;
+  return text_at_most(length, true) + " (" + text_at_most(percent, true) + " % of the size)";
+}
+
 void append_point(std::string& text, const Point3& point) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis > 0) text += ' ';

@@ -45,6 +45,9 @@ void append_point(std::string& text, const Point3& point);
 /// for upper ones.
 [[nodiscard]] std::string text_at_most(double x, bool at_least = false);
 
+/// "0.031 (0.25 % of the size)": at least that length.
+[[nodiscard]] std::string text_of_length(double length, double size);
+
 /// Appends a decimal integer.
 void append_integer(std::string& text, std::uint64_t value);
 

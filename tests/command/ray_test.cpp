@@ -130,6 +130,19 @@ TEST_F(ray_command, pictures_show_what_is_asked_for) {
   }
 }
 
+TEST_F(ray_command, pictures_of_kinds_do_not_depend_on_threads) {
+  std::vector<std::string> pictures;
+  for (const char* const threads : {"1", "2", "2", "4"}) {
+    const std::string file = folder_.file("picture.png");
+    ASSERT_EQ(run_snug({"render", model("bust.obj"), "--colour", "kind", "--size", "64", "--samples", "1",
+                        "--threads", threads, "--quiet", "-o", file})
+                  .status,
+              0);
+    pictures.push_back(bytes(file));
+    EXPECT_EQ(pictures.front(), pictures.back()) << threads;
+  }
+}
+
 TEST_F(ray_command, pictures_refuse_what_cannot_be_drawn) {
   const std::string part = write("box.obj", box), file = folder_.file("picture.png");
   for (const std::vector<std::string>& how : {std::vector<std::string>{"--opacity", "2"},

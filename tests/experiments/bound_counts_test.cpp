@@ -113,7 +113,8 @@ TEST(control_boxes, contain_limit_points_of_curves) {
     for (const int degree : {2, 3}) {
       const CurveSet curves = testing::curve_set(twin, degree);
       for (std::uint32_t e = 0; e < twin.edge_count(); ++e) {
-        const Box3 box = unscaled(control_box(curves.piece(EdgeId(e)), scratch), curves.scale().inverse());
+        const Box3 box =
+            unscaled(control_box(curves.edges().piece(EdgeId(e)), scratch), curves.edges().scale().inverse());
         for (int i = 0; i <= 32; ++i) {
           EXPECT_TRUE(testing::contains(box, oracle::curve_at(twin, degree, e, i / 32.0))) << e;
         }

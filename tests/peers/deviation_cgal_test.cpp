@@ -1,6 +1,6 @@
 // Deviations of random closed meshes, taken as they are, against CGAL's bounded_error_Hausdorff_distance.
 
-#include <snug/deviation.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <oracle/hausdorff_twin.h>

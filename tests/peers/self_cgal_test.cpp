@@ -4,7 +4,7 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <snug/self_contact.h>
+#include <snug/contacts.h>
 
 #include <gtest/gtest.h>
 #include <testing/tagged.h>

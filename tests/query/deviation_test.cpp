@@ -1,6 +1,6 @@
 // Deviations that are known, what is refused, and that neither threads nor budgets make them wrong.
 
-#include <snug/deviation.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <snug/evaluate.h>
@@ -128,8 +128,10 @@ TEST(deviation, of_a_tessellation_is_small_and_that_of_the_control_mesh_is_known
     const Surface ball = surface_of(shape, scheme);
     double before = 1;
     for (const unsigned level : {2u, 3u, 4u}) {
-      const Deviation found =
-          compared(ball, testing::candidate_of(testing::triangles_of(subdivided(ball, level, true))), 1e-4);
+      const Deviation found = compared(ball,
+                                       testing::candidate_of(testing::triangles_of(
+                                           subdivided(ball.mesh(), level, true, {.scheme = scheme}))),
+                                       1e-4);
       EXPECT_EQ(found.outcome, Outcome::complete);
       EXPECT_LT(found.from_surface.distance.upper, before / 2);
       EXPECT_LE(found.from_candidate.distance.lower, found.from_surface.distance.upper + 0.1);
@@ -218,7 +220,7 @@ TEST(deviation, answers_a_tolerance_and_no_more) {
 TEST(deviation, is_true_with_any_budget) {
   const Surface ball = surface_of(cube(), Scheme::catmark);
   const std::vector<Triangle> candidate =
-      testing::candidate_of(testing::triangles_of(subdivided(ball, 1, true)));
+      testing::candidate_of(testing::triangles_of(subdivided(ball.mesh(), 1, true)));
   const Deviation truth = compared(ball, candidate, 1e-4);
   ASSERT_EQ(truth.outcome, Outcome::complete);
   const auto overlap = [](const Interval& a, const Interval& b) {
@@ -242,7 +244,7 @@ TEST(deviation, is_true_with_any_budget) {
 TEST(deviation, depends_on_no_threads) {
   const Surface ball = surface_of(cube(), Scheme::catmark);
   const std::vector<Triangle> candidate =
-      testing::candidate_of(testing::triangles_of(subdivided(ball, 2, true)));
+      testing::candidate_of(testing::triangles_of(subdivided(ball.mesh(), 2, true)));
   DeviationOptions options;
   options.absolute = 1e-3;
   options.solid = true;

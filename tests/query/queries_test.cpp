@@ -153,7 +153,9 @@ TEST(handles, evaluate_refine_and_measure) {
       normal_at(a.at(Motion::rotation({0, 0, 1}, std::numbers::pi / 2)), at);
   ASSERT_TRUE(normal && point.normal);
   EXPECT_NEAR(normal->direction.x, -point.normal->y, 1e-12);
-  EXPECT_EQ(subdivided(a, 2).face_count(), 16 * a.mesh().face_count());
+  EXPECT_EQ(subdivided(a.mesh(), 2).face_count(), 16 * a.mesh().face_count());
+  EXPECT_EQ(subdivided(a.mesh(), 1, false, {.scheme = Scheme::midedge}).face_count(),
+            3 * a.mesh().face_count() + 2);  // one for each face, edge and vertex, by Euler's formula
   EXPECT_GT(limit_to_faces(a).value(), 0);
   EXPECT_EQ(limit_to_faces(load(model("star.obj"), {.scheme = Scheme::flat})).value_or(1) < 1e-10, true);
 }

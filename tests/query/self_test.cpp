@@ -1,6 +1,6 @@
 // self_contact(): clear, crossing, touching and collapsed shapes; what does not change the answer.
 
-#include <snug/self_contact.h>
+#include <snug/contacts.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>

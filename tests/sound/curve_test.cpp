@@ -79,7 +79,7 @@ TEST(curves, lie_in_their_enclosures_at_a_hundred_thousand_adversarial_points) {
         }
         const auto check = [&](const BoundOptions& how) {
           const BoundSummary summary = bound(curves, how, [&](const CurveEnclosure& piece) {
-            const testing::Range range = testing::range_of(piece.path);
+            const testing::Range range = testing::range_of(piece.piece);
             for (const CurveSample& s : samples[piece.edge.index()]) {
               if (!range.holds(s.t)) continue;
               ++checks;
@@ -87,8 +87,8 @@ TEST(curves, lie_in_their_enclosures_at_a_hundred_thousand_adversarial_points) {
               if (!inside) {
                 ADD_FAILURE() << disguise.name << ", degree " << degree
                               << (twin.closed ? ", closed, " : ", open, ") << twin.points.size()
-                              << " vertices, edge " << s.edge << " at " << s.t << ", piece '"
-                              << piece.path.text() << "'";
+                              << " vertices, edge " << s.edge << " at " << s.t << ", piece '" << piece.piece
+                              << "'";
               }
             }
           });
@@ -117,14 +117,14 @@ TEST(curves, lie_in_their_enclosures_after_fifty_splits) {
       for (oracle::Point& p : twin.points) p = disguise.change(p);
       for (const int degree : {2, 3}) {
         const CurveSet curves = testing::curve_set(twin, degree);
-        const PowerOfTwo back = curves.scale().inverse();
+        const PowerOfTwo back = curves.edges().scale().inverse();
         const auto edge = static_cast<std::uint32_t>(random() % twin.edge_count());
         for (const std::uint64_t turns :
              {std::uint64_t{0}, ~std::uint64_t{0}, static_cast<std::uint64_t>(random())}) {
-          CurvePiece piece = curves.piece(EdgeId(edge));
+          CurvePiece piece = curves.edges().piece(EdgeId(edge));
           BoundingPoints points;
           for (unsigned level = 0; level <= 50; ++level) {
-            const testing::Range range = testing::range_of(piece.path);
+            const testing::Range range = testing::range_of(piece.path.text());
             bounding_points(piece, points);
             const auto limits = limit_ends(piece);
             const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
@@ -156,11 +156,11 @@ TEST(curves, positions_are_within_their_error) {
         const CurveSet curves = testing::curve_set(twin, degree);
         for (std::uint32_t e = 0; e < twin.edge_count(); ++e) {
           for (const double t : parameters(random, 20)) {
-            const CurveSetPoint point = evaluate(curves, EdgeId(e), t);
+            const CurvePoint point = evaluate(curves, EdgeId(e), t);
             const CurveSample s = curve_at(twin, degree, e, t);
             ++points;
             for (std::size_t a = 0; a < 3; ++a) {
-              ASSERT_LE(std::fabs(static_cast<long double>(point.position[a]) - s.position[a]),
+              ASSERT_LE(std::fabs(static_cast<long double>(point.point[a]) - s.position[a]),
                         static_cast<long double>(point.error) + s.error)
                   << disguise.name << ", degree " << degree << ", edge " << e << " at " << t;
             }

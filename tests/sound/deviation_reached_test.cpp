@@ -3,7 +3,7 @@
 //
 //   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_test --gtest_filter='*reached*'
 
-#include <snug/deviation.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <support/error.h>

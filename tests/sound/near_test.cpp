@@ -1,7 +1,7 @@
 // Random bodies and folds of every scheme with a tolerance: none is clear whose refined mesh has near points
 // with a long way between them, none near whose refined mesh has none.
 
-#include <snug/self_contact.h>
+#include <snug/contacts.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>

@@ -1,6 +1,6 @@
 // self_contact() with a tolerance: sheets, spheres, folds, bodies and boundaries whose distances are known.
 
-#include <snug/self_contact.h>
+#include <snug/contacts.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>

@@ -1,7 +1,7 @@
 // Random closed meshes of every scheme, from smooth to crumpled: none is clear whose refined mesh crosses
 // itself; nearly all that do not are not said to.
 
-#include <snug/self_contact.h>
+#include <snug/contacts.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <oracle/curve_twin.h>
-#include <snug/query/bound.h>
+#include <snug/surface/curve_set.h>
 #include <testing/containment.h>
 
 #include <random>
+#include <string>
 #include <vector>
 
 /// Curves of the oracle as the library's own, and what tests ask of both.
@@ -25,7 +26,7 @@ namespace snug::testing {
 }
 
 [[nodiscard]] inline CurveSet curve_set(const oracle::TwinPolyline& twin, int degree) {
-  return {control_mesh(std::vector{twin}), degree == 2 ? CurveDegree::quadratic : CurveDegree::cubic};
+  return CurveSet(control_mesh(std::vector{twin}), degree == 2 ? CurveDegree::quadratic : CurveDegree::cubic);
 }
 
 /// Open and closed ones of every small length, with repeated vertices among them.
@@ -68,11 +69,11 @@ struct Range {
   double first, size;
   [[nodiscard]] bool holds(double t) const { return t >= first && t <= first + size; }
 };
-[[nodiscard]] inline Range range_of(const PiecePath& path) {
+[[nodiscard]] inline Range range_of(const std::string& piece) {
   Range range{0, 1};
-  for (unsigned i = 0; i < path.level(); ++i) {
+  for (const char digit : piece) {
     range.size /= 2;
-    range.first += path.digit(i) * range.size;
+    range.first += (digit - '0') * range.size;
   }
   return range;
 }

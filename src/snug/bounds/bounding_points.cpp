@@ -139,10 +139,6 @@ void bounding_points(const BoundingRows& rows, const Patch& patch, BoundingPoint
 
 namespace {
 
-// Levels that a patch is split, before the nets of its pieces do: one of a transient kind, and at a crowded
-// corner.
-constexpr unsigned transient_levels = 5, high_valence_levels = 12;
-
 // The points of the parts of a patch of a kind that few share; `scratch` has a patch a level below.
 void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
                BoundingPoints& out) {
@@ -157,7 +153,7 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
   // A split brings Bezier points nearer.
   const Stencils* const creased = level > 0 && kind.transient() ? library.crease_rows(kind) : nullptr;
   if (creased) return out.add(*creased, patch);
-  if (level >= (kind.transient() ? transient_levels : high_valence_levels)) {
+  if (level >= (kind.transient() ? transient_split_levels : high_valence_split_levels)) {
     return out.add(patch.points, patch.error, patch.largest);
   }
   for (unsigned child = 0; child < 4; ++child) {
@@ -170,7 +166,7 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
 
 void bounding_points(BoundsCache& library, const Patch& patch, BoundingPoints& out) {
   if (!patch.kind->cacheable()) {
-    thread_local std::array<Patch, high_valence_levels> scratch;
+    thread_local std::array<Patch, high_valence_split_levels> scratch;
     thread_local Patch whole;
     whole = patch;
     whole.path = {};  // a path may have no room for so many more digits

@@ -11,6 +11,10 @@
 
 namespace snug {
 
+/// Levels that a patch of a kind that few share is split before the nets of its pieces bound it: one of a transient kind, and
+/// one at a high-valence corner.
+inline constexpr unsigned transient_split_levels = 5, high_valence_split_levels = 12;
+
 /// Points whose convex hull contains a piece of a surface or a curve, relative to its origin; arrays by axis.
 class BoundingPoints {
  public:

@@ -11,8 +11,8 @@ namespace snug {
 namespace {
 
 // One direction of the tensor product: four Bezier points of a cubic, each from four control points.
-using Weights = std::array<Interval, 4>;
-using Cubic = std::array<Weights, 4>;
+using CubicWeights = std::array<Interval, 4>;
+using Cubic = std::array<CubicWeights, 4>;
 
 // Exact where a factor, or a term, is 0.
 Interval product(const Interval& a, const Interval& b) {
@@ -22,19 +22,19 @@ Interval sum(const Interval& a, const Interval& b) {
   return a == Interval{} ? b : b == Interval{} ? a : a + b;
 }
 
-Weights combined(const Interval& a, const Weights& x, const Interval& b, const Weights& y) {
-  Weights all;
+CubicWeights combined(const Interval& a, const CubicWeights& x, const Interval& b, const CubicWeights& y) {
+  CubicWeights all;
   for (std::size_t k = 0; k < 4; ++k) all[k] = sum(product(a, x[k]), product(b, y[k]));
   return all;
 }
 
 // Columns across the crease, that of the crease at 1.
-using Columns = std::array<Weights, 5>;
+using Columns = std::array<CubicWeights, 5>;
 
 // The piece of a uniform cubic B-spline that begins at column `first`.
 Cubic segment(const Columns& column, std::size_t first) {
-  const Weights *const a = &column[first], &b = a[1], &c = a[2];
-  const Weights ends_b = combined({1.0}, a[0], {1.0}, c), ends_c = combined({1.0}, b, {1.0}, a[3]);
+  const CubicWeights *const a = &column[first], &b = a[1], &c = a[2];
+  const CubicWeights ends_b = combined({1.0}, a[0], {1.0}, c), ends_c = combined({1.0}, b, {1.0}, a[3]);
   const Interval sixth = Interval(1.0) / Interval(6.0), third = Interval(1.0) / Interval(3.0);
   const Interval two_thirds = Interval(2.0) / Interval(3.0);
   return {combined(sixth, ends_b, two_thirds, b), combined(two_thirds, b, third, c),
@@ -78,7 +78,7 @@ Columns refined(const Columns& c, double sharp) {
   next[3] = combined(eighth, combined({1.0}, c[1], {1.0}, c[3]), most, c[2]);
   next[1] = c[1];
   if (sharp < 1) {
-    const Weights smooth = combined(eighth, combined({1.0}, c[0], {1.0}, c[2]), most, c[1]);
+    const CubicWeights smooth = combined(eighth, combined({1.0}, c[0], {1.0}, c[2]), most, c[1]);
     next[1] = combined({sharp}, c[1], Interval(1.0) - Interval(sharp), smooth);
   }
   return next;
@@ -162,18 +162,18 @@ std::optional<CreaseLine> crease_line(const Kind& kind) {
 
 // Weights of the lattice, and the Bezier points of a triangle of degree 6.
 using Row = std::array<Interval, 16>;
-using Triangle = std::array<Row, bezier_count(6)>;
+using RowTriangle = std::array<Row, bezier_count(6)>;
 
-Row tensor(const Weights& x, const Weights& y) {
+Row tensor(const CubicWeights& x, const CubicWeights& y) {
   Row row;
   for (std::size_t i = 0; i < 16; ++i) row[i] = product(x[i % 4], y[i / 4]);
   return row;
 }
 
 // The half of a tensor product between (0, 0), (1, 0) and (1, 1): derivations/tensor_bezier.md.
-Triangle half_of(const Cubic& x, const Cubic& y) {
+RowTriangle half_of(const Cubic& x, const Cubic& y) {
   constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
-  Triangle sums{};
+  RowTriangle sums{};
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
       const Row point = tensor(x[i], y[j]);
@@ -195,8 +195,8 @@ Triangle half_of(const Cubic& x, const Cubic& y) {
 }
 
 // From another corner: corners 0 and 2 change places.
-Triangle turned(const Triangle& triangle) {
-  Triangle result;
+RowTriangle turned(const RowTriangle& triangle) {
+  RowTriangle result;
   for (std::size_t j = 0; j <= 6; ++j) {
     for (std::size_t i = 0; i + j <= 6; ++i) {
       result[bezier_index(6, i, j)] = triangle[bezier_index(6, i, 6 - i - j)];
@@ -206,7 +206,7 @@ Triangle turned(const Triangle& triangle) {
 }
 
 // Cut from corner 1 or 2 to the point t of the edge from corner 0 to the other: what is beyond, or before.
-Triangle cut(Triangle triangle, double t, std::size_t edge, bool beyond) {
+RowTriangle cut(RowTriangle triangle, double t, std::size_t edge, bool beyond) {
   for (std::size_t line = 0; line <= 6; ++line) {
     const std::size_t last = 6 - line;
     const auto at = [&](std::size_t k) -> Row& {
@@ -239,14 +239,14 @@ class RowWriter {
     }
     out_.end_row();
   }
-  void add(const Triangle& triangle) {
+  void add(const RowTriangle& triangle) {
     for (const Row& row : triangle) add(row);
   }
   // The half of the quad that is the patch, as far as it is `width` from the crease or more, if it was a
   // boundary: a triangle where an edge is on the crease, else two beside the corner that is.
   void add_beyond(double width, const Cubic& across, const Cubic& along) {
     if (line_.along_edge()) return add(half(cut(across, width, true), stretch(along, width, 1)));
-    const Triangle whole = half(across, along), at_corner = line_.far ? turned(whole) : whole;
+    const RowTriangle whole = half(across, along), at_corner = line_.far ? turned(whole) : whole;
     add(cut(at_corner, width, 1, true));
     add(cut(cut(at_corner, width, 1, false), width, 2, true));
   }
@@ -256,8 +256,8 @@ class RowWriter {
     add(half(across, stretch(along, begin, end)));
     if (!line_.along_edge() && begin == 0) return;
     const Cubic beside = line_.along_edge() ? stretch(along, end, 1) : stretch(along, 0, begin);
-    for (const Weights& a : placed(across)) {
-      for (const Weights& b : beside) add(line_.along_x ? tensor(b, a) : tensor(a, b));
+    for (const CubicWeights& a : placed(across)) {
+      for (const CubicWeights& b : beside) add(line_.along_x ? tensor(b, a) : tensor(a, b));
     }
   }
 
@@ -268,7 +268,7 @@ class RowWriter {
     return line_.far ? cut(cut(along, 1 - b, true), (b - a) / b, false)
                      : cut(cut(along, b, false), a / b, true);
   }
-  [[nodiscard]] Triangle half(const Cubic& across, const Cubic& along) const {
+  [[nodiscard]] RowTriangle half(const Cubic& across, const Cubic& along) const {
     return line_.along_x ? half_of(along, placed(across)) : half_of(placed(across), along);
   }
 

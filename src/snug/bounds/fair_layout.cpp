@@ -19,7 +19,7 @@ namespace {
 // Fairness of one equation against one sample of the limit, both squared.
 constexpr double fairness = 0.3;
 // Of a limit at a corner of the patch, against one elsewhere: what cannot be fair shall not collapse for it.
-constexpr double corner_weight = 100;
+constexpr double fair_corner_weight = 100;
 // Weight of the equations that hold control points which no other one does; far below all others.
 constexpr double hold = 1e-11;
 // Samples at all corners of pieces on this level.
@@ -117,7 +117,7 @@ void add_limits(const Kind& kind, std::size_t first, const PiecePath& path, cons
       const TriangleParameter at = to_face(path, corners[(k + first) % 3]);
       if (!done.emplace(at.u, at.v).second) continue;
       const bool corner = at.u == 1 || at.v == 1 || (at.u == 0 && at.v == 0);
-      places.add(product(kind.corner_limits().row(k), net), {at.u, at.v}, corner ? corner_weight : 1);
+      places.add(product(kind.corner_limits().row(k), net), {at.u, at.v}, corner ? fair_corner_weight : 1);
     }
     return;
   }

@@ -69,8 +69,6 @@ constexpr unsigned max_levels = 16;
 // How much nets may add before they are split.
 constexpr double notable_excess = 0.05;
 constexpr double corner_weight = 3;
-// The same for kinds that few share: one of a transient kind, and at a high-valence corner.
-constexpr unsigned transient_levels = 5, high_valence_levels = 12;
 
 // Corners of the convex hull, up to rounding.
 std::vector<LayoutPoint> convex_hull(std::vector<LayoutPoint> points) {
@@ -307,8 +305,8 @@ class Comparison {
       Open& open = *open_[next];
       const Kind& kind = *open.piece.kind;
       const unsigned limit = kind.cacheable()   ? max_levels
-                             : kind.transient() ? transient_levels
-                                                : high_valence_levels;
+                             : kind.transient() ? transient_split_levels
+                                                : high_valence_split_levels;
       if (open.distance <= (1 + notable_excess) * farthest_ || open.level >= limit) {
         rest = std::max(rest, open.distance);
       } else {

@@ -11,7 +11,7 @@
 namespace snug {
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_kernel(const std::string& why) {
   throw NotDecided(InputProblem::refused, "the kernel of the mesh is not decided: " + why);
 }
 
@@ -48,17 +48,18 @@ void require_small_faces(const Topology& topology, const std::vector<bool>& with
       shown += inside(i) || inside(i + 1) || inside(i + n - 1) ? 1 : 0;
     }
     if (n <= shown + 3) continue;
-    refuse("face " + std::to_string(f) + " has " + std::to_string(n) + " corners, " +
-           std::to_string(n - shown) + " of them beside no vertex inside; split it, or close the mesh");
+    refuse_kernel("face " + std::to_string(f) + " has " + std::to_string(n) + " corners, " +
+                  std::to_string(n - shown) +
+                  " of them beside no vertex inside; split it, or close the mesh");
   }
 }
 
 void require_manifold_with_surfaces(const Topology& topology, const std::vector<bool>& without_surface) {
-  if (!topology.is_manifold()) refuse("it is not manifold; 'snug info' names where, mend it");
+  if (!topology.is_manifold()) refuse_kernel("it is not manifold; 'snug info' names where, mend it");
   const auto first = std::find(without_surface.begin(), without_surface.end(), true);
   if (first != without_surface.end()) {
-    refuse("face " + std::to_string(first - without_surface.begin()) +
-           " has no surface; remove the tag of the hole, or take another boundary rule");
+    refuse_kernel("face " + std::to_string(first - without_surface.begin()) +
+                  " has no surface; remove the tag of the hole, or take another boundary rule");
   }
 }
 
@@ -135,8 +136,8 @@ void add_alternating(const RuledMesh& ruled, const std::vector<bool>& without_su
     Colouring found = colour(ruled, without_surface, VertexId(v), signs);
     if (!found.two_colours || !found.vanishes) continue;
     if (found.unknown.valid()) {
-      refuse("vertex " + std::to_string(found.unknown.index()) +
-             " has two edges, and sharpness that decays; give infinite sharpness or none");
+      refuse_kernel("vertex " + std::to_string(found.unknown.index()) +
+                    " has two edges, and sharpness that decays; give infinite sharpness or none");
     }
     std::sort(found.vertices.begin(), found.vertices.end());
     KernelVector vector{std::move(found.vertices), {}};

@@ -18,7 +18,7 @@ struct Weight {
 };
 
 /// p / q in lowest terms.
-inline mpq_class fraction(long p, long q) {
+[[nodiscard]] inline mpq_class fraction(long p, long q) {
   mpq_class x(p, q);
   x.canonicalize();
   return x;

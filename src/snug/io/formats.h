@@ -110,6 +110,9 @@ namespace snug {
 [[nodiscard]] std::string format_usda(const ControlMesh& mesh, const std::string& name,
                                       const Notes& notes = {});
 
+/// Bytes before the first chunk of a binary glTF file, and of a chunk before its content.
+inline constexpr std::size_t glb_header_size = 12, glb_chunk_head_size = 8;
+
 /// Whether the bytes begin like a binary glTF file.
 [[nodiscard]] bool begins_like_glb(std::string_view bytes);
 

@@ -16,7 +16,6 @@ namespace {
 
 using Position = std::array<float, 3>;
 
-constexpr std::size_t header_size = 12, chunk_head_size = 8;
 constexpr std::size_t position_size = 12, index_size = 4;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
@@ -117,7 +116,8 @@ std::string format_glb(const ControlMesh& mesh, const std::string& name, const N
   // Both sorts of values take whole words: nothing is left to pad.
   const std::size_t binary_size =
       (positions.size() + normals.size()) * position_size + 3 * triangles * index_size;
-  const std::size_t size = header_size + chunk_head_size + json.size() + chunk_head_size + binary_size;
+  const std::size_t size =
+      glb_header_size + glb_chunk_head_size + json.size() + glb_chunk_head_size + binary_size;
   if (size > std::numeric_limits<std::uint32_t>::max()) {
     refuse(name, "the mesh takes more than the 4 GiB of a binary glTF file: write PLY");
   }

@@ -22,8 +22,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t header_size = 12, chunk_head_size = 8;
-
 /// The member of this name; nothing if there is none, or no object.
 const Json* find(const Json& of, std::string_view key) {
   if (!of.is_object()) return nullptr;
@@ -474,14 +472,14 @@ class GlbReader {
 /// The chunk at an offset, which moves behind it.
 std::string_view take_chunk(std::string_view bytes, std::size_t& at, std::string_view type,
                             const std::string& name) {
-  if (bytes.size() - at < chunk_head_size)
+  if (bytes.size() - at < glb_chunk_head_size)
     fail_in_file(name, "glTF: the file ends within a chunk: it is truncated");
   const std::size_t size = load<std::uint32_t>(bytes.data() + at, std::endian::little);
   if (bytes.substr(at + 4, 4) != type) {
     fail_in_file(name, "glTF: " + in_quotes(bytes.substr(at + 4, 4)) + " found where the chunk " +
                            in_quotes(type) + " is expected");
   }
-  at += chunk_head_size;
+  at += glb_chunk_head_size;
   if (size > bytes.size() - at) fail_in_file(name, "glTF: a chunk ends beyond the file: it is truncated");
   const std::string_view chunk = bytes.substr(at, size);
   at += size;
@@ -516,7 +514,7 @@ ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Not
     refuse_other_formats(bytes, name);
     fail_in_file(name, "this is not a binary glTF file: it does not begin with 'glTF'");
   }
-  if (bytes.size() < header_size)
+  if (bytes.size() < glb_header_size)
     fail_in_file(name, "glTF: the file ends within its header: it is truncated");
   const auto version = load<std::uint32_t>(bytes.data() + 4, std::endian::little),
              length = load<std::uint32_t>(bytes.data() + 8, std::endian::little);
@@ -526,7 +524,7 @@ ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Not
     fail_in_file(name, "glTF: the file declares " + std::to_string(length) + " bytes, but has " +
                            std::to_string(bytes.size()));
   }
-  std::size_t at = header_size;
+  std::size_t at = glb_header_size;
   const Json json = parse_json(take_chunk(bytes, at, "JSON"sv, name), name);
   const std::string_view binary =
       at < bytes.size() ? take_chunk(bytes, at, "BIN\0"sv, name) : std::string_view();

@@ -15,7 +15,7 @@
 namespace snug {
 namespace {
 
-constexpr std::size_t header_size = 80, preamble_size = 84, facet_size = 50;
+constexpr std::size_t stl_header_size = 80, preamble_size = 84, facet_size = 50;
 
 bool same_word(std::string_view word, std::string_view keyword) {
   return std::ranges::equal(word, keyword, {}, lower_case);
@@ -116,7 +116,7 @@ class AsciiParser {
 Corners read_corners(std::string_view bytes, const std::string& name) {
   const bool has_count = bytes.size() >= preamble_size;
   const std::uint32_t facets =
-      has_count ? load<std::uint32_t>(bytes.data() + header_size, std::endian::little) : 0;
+      has_count ? load<std::uint32_t>(bytes.data() + stl_header_size, std::endian::little) : 0;
   const std::uint64_t promised = preamble_size + std::uint64_t{facet_size} * facets;
   // Text of this size would have to be gigabytes long.
   if (has_count && bytes.size() == promised) return read_binary(bytes, facets, name);
@@ -167,7 +167,7 @@ std::string format_stl(const ControlMesh& mesh, const std::string& name, const N
   const auto points = in_single_precision(mesh.points, name, notes);
   std::string bytes = "binary STL written by snug";
   bytes.reserve(preamble_size + facet_size * mesh.face_count());
-  bytes.resize(header_size, ' ');
+  bytes.resize(stl_header_size, ' ');
   append_binary(bytes, static_cast<std::uint32_t>(mesh.face_count()));
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const auto corners = mesh.face(FaceId(face));

@@ -10,7 +10,7 @@
 namespace snug {
 namespace {
 
-using Kind = UsdaToken::Kind;
+using TokenKind = UsdaToken::Kind;
 
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
@@ -30,7 +30,7 @@ class PrimReader {
 
   UsdaStage read() {
     if (text_.take_if('(')) read_metadata(UsdaPrim::no_parent);
-    while (text_.peek().kind != Kind::end) read_statement();
+    while (text_.peek().kind != TokenKind::end) read_statement();
     if (prim_ != UsdaPrim::no_parent) {
       const UsdaPrim& open = stage_.prims[prim_];
       text_.fail("the file ends within the prim " + in_quotes(open.name) + " of line " +
@@ -50,7 +50,7 @@ class PrimReader {
       return;
     }
     const UsdaToken& token = text_.peek();
-    if (token.kind != Kind::word) fail_at_statement();
+    if (token.kind != TokenKind::word) fail_at_statement();
     if (is_one_of(token.text, {"def", "over", "class"})) return open_prim();
     if (token.is("reorder")) return skip_reordering();
     if (!in_prim) fail_at_statement();
@@ -72,8 +72,8 @@ class PrimReader {
     prim.specifier = specifier.is("def")    ? UsdaSpecifier::def
                      : specifier.is("over") ? UsdaSpecifier::over
                                             : UsdaSpecifier::abstract;
-    if (text_.peek().kind == Kind::word) prim.type = text_.take().text;
-    if (text_.peek().kind != Kind::text) {
+    if (text_.peek().kind == TokenKind::word) prim.type = text_.take().text;
+    if (text_.peek().kind != TokenKind::text) {
       text_.fail(named(text_.peek()) + " found where the name of a prim is expected, in quotes");
     }
     prim.name = text_.take().text;
@@ -87,7 +87,7 @@ class PrimReader {
 
   void skip_reordering() {
     text_.take();
-    while (text_.peek().kind == Kind::word) text_.take();
+    while (text_.peek().kind == TokenKind::word) text_.take();
     text_.expect('=', "in a reordering");
     text_.skip_value();
   }
@@ -110,17 +110,17 @@ class PrimReader {
   void read_metadata(std::size_t prim) {
     while (!text_.take_if(')')) {
       if (text_.take_if(';')) continue;
-      if (text_.peek().kind == Kind::text) {  // a comment
+      if (text_.peek().kind == TokenKind::text) {  // a comment
         text_.take();
         continue;
       }
       const std::size_t line = text_.line();
       UsdaToken name = text_.take();
-      const bool lists =
-          name.kind == Kind::word && is_list_operation(name.text) && text_.peek().kind == Kind::word;
+      const bool lists = name.kind == TokenKind::word && is_list_operation(name.text) &&
+                         text_.peek().kind == TokenKind::word;
       const bool removes = lists && is_one_of(name.text, {"delete", "reorder"});
       if (lists) name = text_.take();
-      if (name.kind != Kind::word) {
+      if (name.kind != TokenKind::word) {
         text_.fail_at(line, named(name) + " found where metadata begins, as in key = value");
       }
       if (text_.take_if('=')) read_metadatum(prim, name.text, line, removes);
@@ -148,7 +148,7 @@ class PrimReader {
       stage_.prims[prim].active = !(value.is("false") || value.is("0") || value.is("False"));
     } else if (of_file && name == "metersPerUnit") {
       stage_.metres_per_unit = text_.real(name);
-    } else if (of_file && name == "upAxis" && text_.peek().kind == Kind::text) {
+    } else if (of_file && name == "upAxis" && text_.peek().kind == TokenKind::text) {
       stage_.up_axis = text_.take().text;
     } else {
       text_.skip_value();
@@ -177,7 +177,7 @@ class PrimReader {
   }
 
   UsdaToken take_word(const char* what) {
-    if (text_.peek().kind != Kind::word) {
+    if (text_.peek().kind != TokenKind::word) {
       text_.fail(named(text_.peek()) + " found where " + what + " is expected");
     }
     return text_.take();
@@ -261,7 +261,7 @@ class PrimReader {
   }
 
   std::string_view take_text(std::string_view name) {
-    if (text_.peek().kind != Kind::text) {
+    if (text_.peek().kind != TokenKind::text) {
       text_.fail(std::string(name) + ": " + named(text_.peek()) + " is not a word in quotes");
     }
     return text_.take().text;
@@ -269,7 +269,7 @@ class PrimReader {
 
   std::int64_t take_integer(std::string_view name) {
     const UsdaToken& token = text_.peek();
-    const auto value = token.kind == Kind::word ? parse_integer(token.text) : std::nullopt;
+    const auto value = token.kind == TokenKind::word ? parse_integer(token.text) : std::nullopt;
     if (!value) text_.fail(std::string(name) + ": " + named(token) + " is not a whole number");
     text_.take();
     return *value;

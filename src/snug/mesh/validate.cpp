@@ -7,10 +7,24 @@
 
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/half_edges.h>
+#include <support/names.h>
 #include <support/scaling.h>
 
 namespace snug {
 namespace {
+
+constexpr auto defect_kind_names =
+    std::to_array<Named<DefectKind>>({{"index-out-of-range", DefectKind::index_out_of_range},
+                                      {"coordinate-not-finite", DefectKind::coordinate_not_finite},
+                                      {"too-few-vertices", DefectKind::too_few_vertices},
+                                      {"repeated-vertex", DefectKind::repeated_vertex},
+                                      {"duplicate-face", DefectKind::duplicate_face},
+                                      {"edge-of-many-faces", DefectKind::edge_of_many_faces},
+                                      {"inconsistent-orientation", DefectKind::inconsistent_orientation},
+                                      {"pinched-vertex", DefectKind::pinched_vertex},
+                                      {"bad-tag", DefectKind::bad_tag},
+                                      {"isolated-vertex", DefectKind::isolated_vertex},
+                                      {"zero-area-face", DefectKind::zero_area_face}});
 
 std::string number(std::size_t n) { return std::to_string(n); }
 
@@ -240,6 +254,8 @@ class Inspector {
 };
 
 }  // namespace
+
+const char* name_of(DefectKind kind) { return name_in(defect_kind_names, kind); }
 
 std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(true); }
 

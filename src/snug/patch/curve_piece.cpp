@@ -61,11 +61,11 @@ std::array<RelativePoint, 2> limit_ends(const CurvePiece& piece) {
           RelativePoint{bezier.points[bezier.count - 1], bezier.error}};
 }
 
-CurvePoint curve_point(const CurvePiece& piece, double t) {
+CurvePiecePoint curve_point(const CurvePiece& piece, double t) {
   require_value(t >= 0 && t <= 1, "a parameter is outside its edge: t must be from 0 to 1");
   if (piece.window == CurveWindow::quadratic_edge) {
     const unsigned child = t > 0.5 ? 1 : 0;
-    CurvePoint result = curve_point(split(piece, child), 2 * t - child);  // exact
+    CurvePiecePoint result = curve_point(split(piece, child), 2 * t - child);  // exact
     result.tangent = 2 * result.tangent;
     return result;
   }

@@ -49,13 +49,13 @@ struct CurveBezier {
 [[nodiscard]] std::array<RelativePoint, 2> limit_ends(const CurvePiece& piece);
 
 /// A limit point and the derivative there along the piece's parameter.
-struct CurvePoint {
+struct CurvePiecePoint {
   RelativePoint point;
   Vector3 tangent;  ///< in double precision without a bound; may be 0
 };
 /// Guarantee: |relative - exact| <= error a coordinate, for exactly this parameter.
 /// Errors:    InputError (value) unless 0 <= t <= 1.
 /// Source:    derivations/curves.md.
-[[nodiscard]] CurvePoint curve_point(const CurvePiece& piece, double t);
+[[nodiscard]] CurvePiecePoint curve_point(const CurvePiece& piece, double t);
 
 }  // namespace snug

@@ -9,6 +9,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/search/surface_data.h>
 #include <snug/shape/normal_cone.h>
+#include <snug/surface/curve_set.h>
 #include <snug/surface/unscale.h>
 #include <support/parallel.h>
 #include <support/run.h>
@@ -62,17 +63,21 @@ class SurfacePieces {
   BoundingPoints points_;
 };
 
+struct EdgeEnclosure : Enclosure<2> {
+  EdgeId edge;
+};
+
 class CurvePieces {
  public:
-  using Enclosure = CurveEnclosure;
+  using Enclosure = EdgeEnclosure;
   static constexpr unsigned children = 2;
 
-  explicit CurvePieces(const CurveSet& curves) : curves_(curves), back_(curves.scale().inverse()) {}
+  explicit CurvePieces(const CurveSet::Edges& edges) : edges_(edges), back_(edges.scale().inverse()) {}
 
-  [[nodiscard]] std::optional<CurvePiece> whole(std::size_t i) const { return curves_.piece(EdgeId(i)); }
+  [[nodiscard]] std::optional<CurvePiece> whole(std::size_t i) const { return edges_.piece(EdgeId(i)); }
   [[nodiscard]] unsigned level(std::size_t) const { return 0; }
 
-  bool enclose(std::size_t i, const CurvePiece& piece, CurveEnclosure& out) {
+  bool enclose(std::size_t i, const CurvePiece& piece, EdgeEnclosure& out) {
     out.edge = EdgeId(i);
     const std::array<RelativePoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
@@ -80,10 +85,10 @@ class CurvePieces {
     return snug::enclose(ends, piece.origin, offset_segment(points_, ends), interval_simplex(points_, ends),
                          back_, out);
   }
-  void add_normals(const CurvePiece&, CurveEnclosure&) {}
+  void add_normals(const CurvePiece&, EdgeEnclosure&) {}
 
  private:
-  const CurveSet& curves_;
+  const CurveSet::Edges& edges_;
   PowerOfTwo back_;
   BoundingPoints points_;
 };
@@ -199,7 +204,13 @@ BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
 
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const Run& run) {
-  return bound_all(CurvePieces(curves), curves.edge_count(), options, sink, run);
+  return bound_all(
+      CurvePieces(curves.edges()), curves.edge_count(), options,
+      [&](const EdgeEnclosure& piece) {
+        sink(
+            {piece.edge, piece.path.text(), piece.path.level(), piece.corners, piece.offset, piece.interval});
+      },
+      run);
 }
 
 BoundSummary bound(const Surface& surface, const BoundOptions& options,

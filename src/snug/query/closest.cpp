@@ -21,7 +21,7 @@ namespace snug {
 namespace {
 
 // Bounds of gaps err by some hundred roundings of coordinates.
-constexpr double noise = 0x1p-45;
+constexpr double point_noise = 0x1p-45;
 
 // A query point in units of the surface.
 struct QueryPoint {
@@ -54,7 +54,7 @@ class ClosestSearch {
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::closest_point)),
         bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
-                *options.relative, noise * (2 + max_abs(to_ - Point3{}))) {}
+                *options.relative, point_noise * (2 + max_abs(to_ - Point3{}))) {}
 
   ClosestPoint run() {
     workspace_.begin();

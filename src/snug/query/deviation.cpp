@@ -29,9 +29,9 @@ namespace {
 constexpr double min_precision = 0x1p-37;
 // Errors of quadratics: at first a share of the size, then smaller by a factor where that is not enough, at
 // last a share of the precision.
-constexpr double first_share = 0x1p-12, next_share = 0x1p-3, last_share = 0x1p-3;
+constexpr double first_error_share = 0x1p-12, next_share = 0x1p-3, last_share = 0x1p-3;
 // Most quadratics of a set that is refined: of the budget one for so many parts, and beside them a few.
-constexpr std::uint64_t parts_a_piece = 8, pieces_beside = 1u << 17;
+constexpr std::uint64_t parts_a_piece = 8, min_pieces = 1u << 17;
 
 // A set as quadratic triangles, in units in which the largest coordinate of both sets is in [1, 2).
 class ComparedSet {
@@ -80,7 +80,7 @@ class SurfaceSet final : public ComparedSet {
       : surface_(surface),
         to_common_(scale * surface.scale().inverse()),
         threads_(run.threads),
-        max_(pieces_beside + run.max_splits.value_or(default_splits::deviation) / parts_a_piece),
+        max_(min_pieces + run.max_splits.value_or(default_splits::deviation) / parts_a_piece),
         monitor_(stop_only(run)),
         pieces_(quadratic_pieces(surface, own(error), threads_, monitor_)) {
     take();
@@ -264,7 +264,7 @@ struct ScaledOptions {
   }
 
   [[nodiscard]] double last_error() const { return last_share * precision; }
-  [[nodiscard]] double first_error() const { return std::max(first_share * size, last_error()); }
+  [[nodiscard]] double first_error() const { return std::max(first_error_share * size, last_error()); }
 
   PowerOfTwo scale;  // from mesh units
   double size;

@@ -2,10 +2,10 @@
 
 #include <span>
 
-#include <snug/deviation.h>
+#include <snug/distance.h>
 #include <snug/search/surface_bvh.h>
 
-/// The questions of deviation.h about surfaces whose trees are at hand.
+/// The deviations of distance.h about surfaces whose trees are at hand.
 namespace snug {
 
 [[nodiscard]] Deviation deviation(const SurfaceBvh& surface, std::span<const Triangle> candidate,

@@ -16,7 +16,7 @@
 namespace snug {
 namespace {
 
-constexpr int max_attempts = 64;
+constexpr int max_crossing_attempts = 64;
 // Pairs that are followed down at the same time for a first upper bound.
 constexpr std::size_t beam = 4;
 // Pieces beyond a plane that are searched instead of whole surfaces.
@@ -24,7 +24,7 @@ constexpr std::size_t max_beyond = 32;
 // Limit points are evaluated where they may be nearer by so much of the precision.
 constexpr double min_gain = 0.125;
 // Bounds of gaps err by some hundred roundings of what is about 4 large.
-constexpr double noise = 0x1p-43;
+constexpr double gap_noise = 0x1p-43;
 
 bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
 bool farther_pair(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
@@ -36,7 +36,7 @@ class DistanceSearch {
         options_(options),
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::distance)),
-        bounds_(frames_.length_down(*options.absolute), *options.relative, noise) {
+        bounds_(frames_.length_down(*options.absolute), *options.relative, gap_noise) {
     bounds_.raise_lower(frames_.length_down(outer_gap(a, b)));
   }
 
@@ -163,7 +163,7 @@ class DistanceSearch {
   void try_crossing(const NodePair& pair, const PiecePair& pieces) {
     const double radii = pieces.radii[0] + pieces.radii[1];
     const bool flat = radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
-    if (pieces.near.certain_distance == 0 && flat && attempts_ < max_attempts) {
+    if (pieces.near.certain_distance == 0 && flat && attempts_ < max_crossing_attempts) {
       ++attempts_;
       if (proves_crossing(frames_, pieces)) bounds_.reduce_upper(0);
     }

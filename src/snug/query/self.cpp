@@ -1,5 +1,5 @@
+#include <snug/contacts.h>
 #include <snug/search/surface_data.h>
-#include <snug/self_contact.h>
 
 #include <algorithm>
 #include <limits>
@@ -24,10 +24,11 @@
 namespace snug {
 namespace {
 
-constexpr auto verdict_names = std::to_array<Named<SelfVerdict>>({{"clear", SelfVerdict::clear},
-                                                                  {"intersecting", SelfVerdict::intersecting},
-                                                                  {"near", SelfVerdict::near},
-                                                                  {"undecided", SelfVerdict::undecided}});
+constexpr auto self_verdict_names =
+    std::to_array<Named<SelfVerdict>>({{"clear", SelfVerdict::clear},
+                                       {"intersecting", SelfVerdict::intersecting},
+                                       {"near", SelfVerdict::near},
+                                       {"undecided", SelfVerdict::undecided}});
 
 // Levels that pieces are compared at for nearness, beside those for stars.
 constexpr unsigned further_levels = 6;
@@ -35,7 +36,7 @@ constexpr unsigned further_levels = 6;
 constexpr double min_radius = 2, default_radius = 4;
 // Of one pair: pieces compared, crossings tried.
 constexpr std::uint64_t max_tests = 4000;
-constexpr int max_attempts = 40;
+constexpr int max_pair_attempts = 40;
 // Splits of a patch after which a pair is given up.
 constexpr unsigned deepest = 20;
 
@@ -70,7 +71,7 @@ Found compare(SelfPieces& pieces, BoundsCache& library, const NamePair& whole, s
     const double gap = rounded_down(rounded_down(near.certain_distance - x.offset.radius) - y.offset.radius);
     if (gap > 0) continue;
     const double size_x = size_of(x), size_y = size_of(y);
-    if (near.certain_distance == 0 && attempts < max_attempts &&
+    if (near.certain_distance == 0 && attempts < max_pair_attempts &&
         x.offset.radius + y.offset.radius <= std::min(size_x, size_y) / 16) {
       ++attempts;
       if (const auto at = proved_crossing(library, x, y)) {
@@ -342,7 +343,7 @@ class SelfSearch {
 
 }  // namespace
 
-const char* name_of(SelfVerdict verdict) { return name_in(verdict_names, verdict); }
+const char* name_of(SelfVerdict verdict) { return name_in(self_verdict_names, verdict); }
 
 SelfContact self_contact(const Surface& surface, const SelfContactOptions& options, const Run& run) {
   require_value(options.levels <= 20, "self contact: more than 20 levels; give fewer");

@@ -22,15 +22,9 @@ double away_from_faces(const LimitSurface& surface, int threads) {
 
 }  // namespace
 
-std::string text_of_length(double length, double size) {
-  if (!(size > 0)) return text_at_most(length, true);
-  const double percent = length > 0 ? enlarged(length / size * 100) : 0;
-  return text_at_most(length, true) + " (" + text_at_most(percent, true) + " % of the size)";
-}
-
 std::string smoothing_note(const LimitSurface& surface, std::string_view option, std::optional<double> apart,
                            int threads) {
-  if (!smooths_untagged(surface.mesh())) return {};
+  if (surface.options().scheme != Scheme::loop || !smooths_untagged(surface.mesh())) return {};
   if (!apart && surface.face_count() <= max_measured_faces) apart = away_from_faces(surface, threads);
   if (apart == 0) return {};
   const std::string far = apart ? ", up to " + text_of_length(*apart, surface.size()) + " away from them"

@@ -5,15 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include <snug/inspect.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
-
-/// "0.031 (0.25 % of the size)": at least that length.
-[[nodiscard]] std::string text_of_length(double length, double size);
-
-/// Most faces whose distance from the limit surface a note measures, 0.2 seconds.
-inline constexpr std::size_t max_measured_faces = 200'000;
 
 /// "triangles taken as the control mesh of a Loop surface, up to 0.031 (...) away from them; scheme flat takes
 /// ..." for a surface of natural_scheme(); empty unless smooths_untagged() its mesh and moves it. `option` is

@@ -1,5 +1,5 @@
+#include <snug/evaluate.h>
 #include <snug/query/subdivide.h>
-#include <snug/search/surface_data.h>
 
 #include <algorithm>
 #include <cmath>
@@ -129,15 +129,15 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
   return mesh;
 }
 
-ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsigned level, bool limit,
-                             const Run& run) {
-  const CurveSet curves(mesh, degree);  // refuses what has no curves
+ControlMesh subdivided(const CurveSet& curves, unsigned level, bool limit, const Run& run) {
+  const ControlMesh& mesh = curves.mesh();
+  const CurveDegree degree = curves.degree();
   if (level > 30 || (2 * mesh.polyline_vertices.size() << level) > (std::size_t{1} << 31)) {
     throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of polylines with " +
                                                 std::to_string(mesh.polyline_vertices.size()) +
                                                 " vertices is more than 2^31 vertices: take a lower level");
   }
-  const PowerOfTwo scale = curves.scale();
+  const PowerOfTwo scale = curves.edges().scale();
   ControlMesh result;
   for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
     monitor_of(run).report(static_cast<double>(p) / static_cast<double>(mesh.polyline_count()));
@@ -156,8 +156,10 @@ ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsign
   return result;
 }
 
-ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions, const Run& run) {
-  return subdivide(surface.mesh(), surface.data()->limit().options(), level, limit_positions, run);
+ControlMesh subdivided(ControlMesh mesh, unsigned level, bool limit, const SurfaceOptions& options,
+                       const Run& run) {
+  const SchemeOptions rules = rules_for(mesh, options.scheme, options.boundary);
+  return subdivide(std::move(mesh), rules, level, limit, run);
 }
 
 }  // namespace snug

@@ -28,7 +28,7 @@ using Index = TriangleComplex::Index;
 // Tolerances below these, for coordinates from 1 to 2, are refused: rounding would take too much of them.
 constexpr double min_tolerance = 0x1p-41, min_single_tolerance = 0x1p-21;
 // The error of a piece's quadratic that is no hindrance, as a part of the tolerance.
-constexpr double quadratic_share = 0.25;
+constexpr double tolerable_share = 0.25;
 constexpr unsigned deepest_level = 40;
 constexpr double shortest_side = 0x1p-46;  // in parameters
 // Whatever the budget is: edges, also those that were split, have 31 bits.
@@ -288,7 +288,7 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
   if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
-  piece.coarse = piece.thick || !(near.error <= quadratic_share * tolerance(t)) || !(near.error < INFINITY);
+  piece.coarse = piece.thick || !(near.error <= tolerable_share * tolerance(t)) || !(near.error < INFINITY);
   if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.place);
   if (!piece.coarse) return;
   const FlatTriangle triangle = flat(t);
@@ -677,9 +677,9 @@ class CountSearch {
     if (!attempt(INFINITY)) refuse_number();
     // So many triangles are too many at `low`; at `high` they are enough.
     double low = std::isfinite(wanted) ? wanted : 0, high = error_;
-    constexpr int max_attempts = 16;
-    for (int i = 0; i < max_attempts && high > least() && high > 1.02 * low; ++i) {
-      monitor_.report(i / static_cast<double>(max_attempts));
+    constexpr int max_bisections = 16;
+    for (int i = 0; i < max_bisections && high > least() && high > 1.02 * low; ++i) {
+      monitor_.report(i / static_cast<double>(max_bisections));
       const double guess = high * static_cast<double>(count_) / static_cast<double>(max_triangles_);
       double next = low > 0 ? std::sqrt(low * high) : guess / (i == 0 ? 1.0 : 2.0);
       next = std::max({next, least(), 1.01 * low});

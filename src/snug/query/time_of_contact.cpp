@@ -21,7 +21,7 @@ namespace {
 // Precision of distances: of the distance, and of the tolerance.
 constexpr double relative = 0.25, share_of_tolerance = 0.125;
 // The least share of it, where surfaces come together slowly while they move fast.
-constexpr double min_share = 0x1p-9;
+constexpr double least_share = 0x1p-9;
 // Without a tolerance: of the size.
 constexpr double min_resolution = 0x1p-36;
 // Share of the reach of two evaluated times that their distance may take, so that they surely meet.
@@ -374,9 +374,9 @@ class FirstContactSearch {
   // A little after the surfaces have come near each other.
   bool find_crossing(double end) {
     probed_ = true;
-    const double closing = std::max(closing_, min_share) * speed_;
+    const double closing = std::max(closing_, least_share) * speed_;
     const double base = std::max(lower_, last_ ? last_->time + last_->likely() / closing : 0);
-    resolution_ = std::max(resolution_ * std::clamp(closing_, min_share, 1.0), min_resolution * size_);
+    resolution_ = std::max(resolution_ * std::clamp(closing_, least_share, 1.0), min_resolution * size_);
     double step = 0.25 * goal() / speed_;
     for (int i = 0; i < max_probes; ++i, step *= 2) {
       const double time = std::min(base + step, end);

@@ -38,7 +38,7 @@ IntervalVector rotated(const Motion& m, const IntervalVector& v) {
   return {dot(intervals(m.row(0)), v), dot(intervals(m.row(1)), v), dot(intervals(m.row(2)), v)};
 }
 
-[[noreturn]] void refuse_range() {
+[[noreturn]] void refuse_motion() {
   throw InputError(
       InputProblem::unrepresentable,
       "trajectory: poses or velocities do not fit doubles; bring meshes and motion to a moderate "
@@ -86,7 +86,7 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
   if (piece.radians > 0) piece.axis = normalized(vector);
   piece.about = Point3{} + from.offset();
   const Vector3 way = to.offset() - from.offset(), n = piece.axis;
-  if (!is_finite(way) || !(max_abs(way) < 0x1p1000)) refuse_range();
+  if (!is_finite(way) || !(max_abs(way) < 0x1p1000)) refuse_motion();
   piece.velocity = dot(n, way) * n;
   const Vector3 across = way - piece.velocity;
   if (piece.radians == 0) {
@@ -221,7 +221,7 @@ BoundedPose PieceMotion::at(double s) const {
   for (std::size_t k = 0; k < 12; ++k) {
     if (piece_.ends) exact[k] = exact[k] + Interval(s) * closing_[k];
     numbers[k] = middle(exact[k]);
-    if (!std::isfinite(numbers[k])) refuse_range();
+    if (!std::isfinite(numbers[k])) refuse_motion();
   }
   // Between poses at the border of rigidity it may be crossed.
   result.pose = rigidity_defect(numbers) <= rigidity_tolerance ? Motion::from_3x4(numbers)
@@ -287,7 +287,7 @@ double PieceMotion::speed(const SurfaceBvh& model) const {
   const double rise = enlarged(largest(along) + largest(dot(axis_, intervals(piece_.turning)))),
                across = enlarged(length_up(velocity - along * axis_) + lever(model));
   const double result = enlarged(length_up({rise, across, 0}) + closing_speed(model));
-  if (!std::isfinite(result)) refuse_range();
+  if (!std::isfinite(result)) refuse_motion();
   return result;
 }
 
@@ -298,7 +298,7 @@ double PieceMotion::relative_speed(const PieceMotion& a, const SurfaceBvh& model
   };
   const double result =
       enlarged(length_up(velocity(b) - velocity(a)) + a.closing_speed(model_a) + b.closing_speed(model_b));
-  if (!std::isfinite(result)) refuse_range();
+  if (!std::isfinite(result)) refuse_motion();
   return result;
 }
 

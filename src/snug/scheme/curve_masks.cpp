@@ -72,8 +72,6 @@ Point3 moved_vertex(const ControlPolygon& polygon, std::size_t i, const Mask& ma
   return applied(mask, p[(i + n - 1) % n], p[i], p[(i + 1) % n]);
 }
 
-std::string number(std::size_t n) { return std::to_string(n); }
-
 }  // namespace
 
 const Stencils& child_rows(CurveWindow window, unsigned child) {
@@ -142,30 +140,30 @@ void require_curves(const ControlMesh& mesh) {
   std::vector<bool> used(mesh.vertex_count(), false);
   for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
     const auto vertices = mesh.polyline(PolylineId(p));
-    const std::string line = "polyline " + number(p);
+    const std::string line = "polyline " + std::to_string(p);
     if (vertices.size() < 2) {
       found.push_back({DefectKind::too_few_vertices,
-                       line + " has " + number(vertices.size()) + " vertices, a polyline needs 2"});
+                       line + " has " + std::to_string(vertices.size()) + " vertices, a polyline needs 2"});
     }
     for (const VertexId v : vertices) {
       if (v.index() < used.size()) {
         used[v.index()] = true;
       } else {
-        found.push_back({DefectKind::index_out_of_range,
-                         line + " uses vertex " + number(v.index()) + " of " + number(used.size())});
+        found.push_back({DefectKind::index_out_of_range, line + " uses vertex " + std::to_string(v.index()) +
+                                                             " of " + std::to_string(used.size())});
       }
     }
   }
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     if (used[v] && !is_finite(mesh.points[v])) {
       found.push_back({DefectKind::coordinate_not_finite,
-                       "vertex " + number(v) + " has a coordinate that is not finite"});
+                       "vertex " + std::to_string(v) + " has a coordinate that is not finite"});
     }
   }
   if (!found.empty()) refuse(summary(found) + "; mend these elements");
   for (const CornerTag& tag : mesh.tags.corners) {
     if (tag.sharpness > 0 && tag.vertex.index() < used.size() && used[tag.vertex.index()]) {
-      refuse("vertex " + number(tag.vertex.index()) +
+      refuse("vertex " + std::to_string(tag.vertex.index()) +
              " is tagged as a corner, which curves do not have: end a polyline there and begin another");
     }
   }

@@ -3,16 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/mesh/control_mesh.h>
+#include <snug/curves.h>
 #include <snug/scheme/stencils.h>
 
 namespace snug {
-
-/// Uniform B-spline curves, as subdivision curves of polylines.
-enum class CurveDegree : std::uint8_t {
-  quadratic = 2,  ///< corner cutting: 3/4 1/4 and 1/4 3/4 on every edge [Chaikin74]
-  cubic = 3,      ///< vertices 1/8 6/8 1/8, edges 1/2 1/2
-};
 
 /// The control points that a piece of a curve depends on. Parameters run as on the polyline: a vertex at 0,
 /// the next at 1.

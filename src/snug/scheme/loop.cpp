@@ -28,7 +28,7 @@ Interval ring_share(std::size_t n) {
 }
 
 // New position:  (1 - a) v + a mean(ring).
-RingMask vertex_mask(std::size_t n) {
+RingMask ring_vertex_mask(std::size_t n) {
   const Interval a = ring_share(n);
   if (n == 3) return {0.4375, 0.1875};
   if (n == 4) return {0.515625, 0.12109375};
@@ -37,7 +37,7 @@ RingMask vertex_mask(std::size_t n) {
 }
 
 // Limit position:  w v + (1 - w) mean(ring),  w = 1 / (1 + 8 a / 3).
-RingMask limit_mask(std::size_t n) {
+RingMask ring_limit_mask(std::size_t n) {
   const Interval third = Interval(1) + Interval(8) * ring_share(n) / Interval(3);
   const Interval w = n == 6 ? Interval(0.5) : Interval(1) / third;
   return {w, (Interval(1) - w) / Interval(static_cast<double>(n))};
@@ -45,7 +45,9 @@ RingMask limit_mask(std::size_t n) {
 
 // 3/8 + cos(2 pi/n) / 4: subdominant eigenvalue at an interior vertex of valence n, and of the direction
 // across a smooth boundary with n / 2 faces. What is around shrinks by it a level.
-double subdominant(std::size_t n) { return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(n))); }
+double ring_subdominant(std::size_t n) {
+  return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(n)));
+}
 
 constexpr std::size_t full_count = 12;  // control points of a full Loop lattice
 
@@ -130,7 +132,7 @@ class LoopRules : public CreasedRules {
 
   void add_smooth_vertex(const Topology&, VertexId v, const Star& star, const Interval& share,
                          RowBuilder& row) const override {
-    const RingMask mask = vertex_mask(star.spokes.size());
+    const RingMask mask = ring_vertex_mask(star.spokes.size());
     row.add(v.value(), times(share, mask.centre));
     for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), times(share, mask.each));
   }
@@ -145,7 +147,7 @@ class LoopRules : public CreasedRules {
 
   [[nodiscard]] bool has_limit_in_star(const Topology&, const Star&, bool) const override { return true; }
   void add_smooth_limit(const Topology&, VertexId v, const Star& star, Stencils& out) const override {
-    const RingMask mask = limit_mask(star.spokes.size());
+    const RingMask mask = ring_limit_mask(star.spokes.size());
     out.add(v.value(), mask.centre);
     for (const Spoke& spoke : star.spokes) out.add(spoke.end.value(), mask.each);
   }
@@ -158,7 +160,7 @@ class LoopRules : public CreasedRules {
     AcrossCrease across;
     for (std::size_t i = 1; i < faces; ++i) across.inner.push_back(std::sin(static_cast<double>(i) * step));
     const double sum = std::accumulate(across.inner.begin(), across.inner.end(), 0.0);
-    across.end = (std::sin(step) - sum) / (8 * subdominant(2 * faces) - 2);
+    across.end = (std::sin(step) - sum) / (8 * ring_subdominant(2 * faces) - 2);
     return across;
   }
 
@@ -181,7 +183,7 @@ class LoopRules : public CreasedRules {
     return complete(ring, fans);
   }
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
-    return fan.closed ? subdominant(fan.faces()) : std::max(0.5, subdominant(2 * fan.faces()));
+    return fan.closed ? ring_subdominant(fan.faces()) : std::max(0.5, ring_subdominant(2 * fan.faces()));
   }
 };
 

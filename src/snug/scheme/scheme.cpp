@@ -10,8 +10,6 @@
 namespace snug {
 namespace {
 
-std::string number(std::size_t n) { return std::to_string(n); }
-
 [[noreturn]] void refuse(const std::string& why) { throw InputError(InputProblem::refused, why); }
 
 enum class Purpose : std::uint8_t { refinement, surface };
@@ -54,13 +52,14 @@ void require_fitting_faces(const ControlMesh& mesh, const SchemeRules& rules) {
     if (size > rules.max_face_size) large = f;
   }
   const auto text = [&](std::size_t f) {
-    return "face " + number(f) + " has " + number(mesh.face(FaceId(f)).size()) + " vertices";
+    return "face " + std::to_string(f) + " has " + std::to_string(mesh.face(FaceId(f)).size()) + " vertices";
   };
   if (rules.wants_triangles && others > 0) {
-    refuse(text(first) + " (" + number(others) + " faces are not triangles); " + rules.wants_triangles);
+    refuse(text(first) + " (" + std::to_string(others) + " faces are not triangles); " +
+           rules.wants_triangles);
   }
   if (large < mesh.face_count()) {
-    refuse(text(large) + "; at most " + number(rules.max_face_size) + " are taken: split it");
+    refuse(text(large) + "; at most " + std::to_string(rules.max_face_size) + " are taken: split it");
   }
 }
 
@@ -75,14 +74,14 @@ void require_valences(const Topology& topology, const SchemeRules& rules) {
     const bool inside = !topology.isolated(v) && topology.is_manifold(v) && !topology.on_boundary(v);
     if (faces <= most && (!inside || faces >= least)) continue;
     if (++bad <= 10) {
-      text += (bad > 1 ? "; " : "") + std::string(inside ? "interior" : "boundary") + " vertex " + number(i) +
-              " has " + number(faces) + " faces";
+      text += (bad > 1 ? "; " : "") + std::string(inside ? "interior" : "boundary") + " vertex " +
+              std::to_string(i) + " has " + std::to_string(faces) + " faces";
     }
   }
   if (bad == 0) return;
-  if (bad > 10) text += "; and " + number(bad - 10) + " more";
-  refuse(text + "; interior vertices need " + number(least) + " to " + number(most) +
-         " faces, boundary ones at most " + number(most) + ": split faces there");
+  if (bad > 10) text += "; and " + std::to_string(bad - 10) + " more";
+  refuse(text + "; interior vertices need " + std::to_string(least) + " to " + std::to_string(most) +
+         " faces, boundary ones at most " + std::to_string(most) + ": split faces there");
 }
 
 Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {

@@ -240,7 +240,7 @@ struct CurvePlace {
 };
 double max_abs(const CurvePlace& p) { return std::max({std::fabs(p.t), std::fabs(p.u), std::fabs(p.v)}); }
 
-CurvePlace clamped(const CurvePlace& p) {
+CurvePlace clamped_place(const CurvePlace& p) {
   CurvePlace result{std::clamp(p.t, 0.0, 1.0), std::max(p.u, 0.0), std::max(p.v, 0.0)};
   if (const double excess = (result.u + result.v - 1) / 2; excess > 0) {
     result.u = std::clamp(result.u - excess, 0.0, 1.0);
@@ -307,7 +307,7 @@ class PathAgainstPiece {
       if (found.state == State::one && size <= 2 * blur) return found;
       const double radius = safely * (contraction_ * far + blur) + 0x1p-50 * (1 + size);
       if (found.state == State::unsure && outside(next, radius)) return {.state = State::none};
-      x = clamped(next);
+      x = clamped_place(next);
       const double moved = max_abs(CurvePlace{next.t - x.t, next.u - x.u, next.v - x.v});
       far = std::min(safely * (radius + moved), 1.0);
       if (found.state == State::unsure && far <= safely * 8 * (blur + 0x1p-50) / (1 - contraction_)) {

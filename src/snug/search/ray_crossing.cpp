@@ -11,11 +11,11 @@ namespace snug {
 namespace {
 
 // Newton steps that are tried: each is a proof of its own, and the error of the one is squared by the next.
-constexpr unsigned max_steps = 4;
+constexpr unsigned max_newton_steps = 4;
 // Share of a step that bending may take or add.
 constexpr double max_bent = 0.8;
 // Factor that covers a few roundings of a bound.
-constexpr double safely = 1 + 0x1p-40;
+constexpr double ray_slack = 1 + 0x1p-40;
 
 double cross2(const Offset2& a, const Offset2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -56,7 +56,7 @@ TriangleParameter clamped(double u, double v) {
 bool beyond(std::span<const Vector3> points, const Offset2& place, const Offset2& w, double reach) {
   const double size = std::hypot(w.x, w.y);
   if (!(size > 0)) return false;
-  const double least = reach * size * safely;
+  const double least = reach * size * ray_slack;
   double largest = 0;
   for (const Vector3& p : points) {
     const double x = p.x - place.x, y = p.y - place.y;
@@ -102,15 +102,15 @@ SeenPiece::SeenPiece(const RayFrame& ray, const PieceBounds& record, const Point
 
 LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double enough) const {
   LinePieceCrossing result;
-  const double off = (error_ + reach) * safely;
+  const double off = (error_ + reach) * ray_slack;
   if (!(off < INFINITY)) {
     result.along = unbounded;
     return result;
   }
   TriangleParameter at{1.0 / 3, 1.0 / 3};
-  double farthest = 2.0 / 3 * safely;  // a zero is no farther from `at`
+  double farthest = 2.0 / 3 * ray_slack;  // a zero is no farther from `at`
   const double curve = max_abs2(uu_) + max_abs2(uv_) + max_abs2(vv_);
-  for (unsigned step = 0; step < max_steps; ++step) {
+  for (unsigned step = 0; step < max_newton_steps; ++step) {
     const auto [u, v] = at;
     const Vector3 value = net_[0] + u * (along_u_ + u * uu_ + v * uv_) + v * (along_v_ + v * vv_);
     const Vector3 du = along_u_ + (2 * u) * uu_ + v * uv_, dv = along_v_ + u * uv_ + (2 * v) * vv_;
@@ -121,22 +121,22 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
     const Offset2 b_uu = bend(uu_), b_uv = bend(uv_), b_vv = bend(vv_);
     // The inverse times the derivative is off from 1 by this.
     const double doubt = 32 * unit_roundoff * norm * (max_abs2(along_u_) + max_abs2(along_v_) + 2 * curve);
-    const double bent = safely * (std::max(std::fabs(b_uu.x) + std::fabs(b_uv.x) + std::fabs(b_vv.x),
-                                           std::fabs(b_uu.y) + std::fabs(b_uv.y) + std::fabs(b_vv.y)) +
-                                  doubt);
-    const double share = safely * (bent * farthest + doubt);
+    const double bent = ray_slack * (std::max(std::fabs(b_uu.x) + std::fabs(b_uv.x) + std::fabs(b_vv.x),
+                                              std::fabs(b_uu.y) + std::fabs(b_uv.y) + std::fabs(b_vv.y)) +
+                                     doubt);
+    const double share = ray_slack * (bent * farthest + doubt);
     if (!(share < max_bent)) break;  // of what is not a number, too
     const Offset2 newton = inverse({value.x - place.x, value.y - place.y, 0});
     const double blur = norm * off + 32 * unit_roundoff * max_abs(newton);
     // Zeros are at most so far from `at`, then this far from the next place.
-    const double far = std::min(farthest, safely * (max_abs(newton) + blur) / (1 - share));
-    const double radius = safely * (blur + (doubt + bent * far) * far);
+    const double far = std::min(farthest, ray_slack * (max_abs(newton) + blur) / (1 - share));
+    const double radius = ray_slack * (blur + (doubt + bent * far) * far);
     const double next_u = u - newton.x, next_v = v - newton.y, rest = 1 - next_u - next_v;
     // Each barycentric coordinate by itself: those across a needle are far better known than those along it.
     const double rounding = 0x1p-50 * (1 + max_abs(newton));
     const auto off_by = [&](const Gains& of, double times) {
       const double roundings = times * (32 * unit_roundoff * max_abs(newton) + doubt * far + rounding);
-      return safely * (of.of_off * off + roundings + safely * (of.bent + times * doubt) * far * far);
+      return ray_slack * (of.of_off * off + roundings + ray_slack * (of.bent + times * doubt) * far * far);
     };
     const double off_u = off_by(gains(inverse.a, inverse.b, b_uu.x, b_uv.x, b_vv.x), 1),
                  off_v = off_by(gains(inverse.c, inverse.d, b_uu.y, b_uv.y, b_vv.y), 1),
@@ -151,7 +151,7 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
     const double bend_along = (std::fabs(uu_.z) + std::fabs(uv_.z) + std::fabs(vv_.z)) * far * far;
     const double rest_along = (std::fabs(du.z) + std::fabs(dv.z)) * radius + error_ +
                               16 * unit_roundoff * (std::fabs(value.z) + std::fabs(middle));
-    const double spread = safely * (bend_along + rest_along);
+    const double spread = ray_slack * (bend_along + rest_along);
     const Extent along{middle - spread, middle + spread};
     if (step == 0) {
       result.along = along;
@@ -160,7 +160,7 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
       result.along.upper = std::min(result.along.upper, along.upper);
     }
     const bool inside =
-        next_u > off_u && next_v > off_v && rest > off_rest && safely * (max_abs(newton) + radius) <= far;
+        next_u > off_u && next_v > off_v && rest > off_rest && ray_slack * (max_abs(newton) + radius) <= far;
     result.at = clamped(next_u, next_v);
     if (inside) {
       result.state = LinePieceCrossing::State::one;
@@ -176,7 +176,7 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
     }
     at = result.at;
     farthest = std::min(
-        1.0, safely * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + radius + rounding));
+        1.0, ray_slack * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + radius + rounding));
   }
   if (result.state != LinePieceCrossing::State::bent) return result;
   // By lines between the piece and the ray: across its edges, and from its corners.
@@ -188,8 +188,8 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
     middle.x += net_[k].x / 6 - place.x / 6;
     middle.y += net_[k].y / 6 - place.y / 6;
   }
-  result.along.lower -= error_ * safely + 4 * unit_roundoff * std::fabs(result.along.lower);
-  result.along.upper += error_ * safely + 4 * unit_roundoff * std::fabs(result.along.upper);
+  result.along.lower -= error_ * ray_slack + 4 * unit_roundoff * std::fabs(result.along.lower);
+  result.along.upper += error_ * ray_slack + 4 * unit_roundoff * std::fabs(result.along.upper);
   bool none = beyond(net_, place, middle, off);
   for (std::size_t k = 0; k < 3 && !none; ++k) {
     const Vector3 &p = net_[k], &q = net_[(k + 1) % 3];
@@ -209,7 +209,7 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
 bool SeenPiece::passes_side(std::size_t k, const Offset2& place, double reach) const {
   const std::size_t next = (k + 1) % 3;
   const std::array<Vector3, 3> side{net_[k], net_[3 + k], net_[next]};
-  const double off = (error_ + reach) * safely;
+  const double off = (error_ + reach) * ray_slack;
   const Offset2 normal{side[0].y - side[2].y, side[2].x - side[0].x};
   if (beyond(side, place, normal, off) || beyond(side, place, {-normal.x, -normal.y}, off)) return true;
   for (const Vector3& p : side) {

@@ -14,7 +14,7 @@
 namespace snug {
 namespace {
 
-using State = LinePieceCrossing::State;
+using CrossingState = LinePieceCrossing::State;
 
 // Splits after which a ray that meets no border should have been decided.
 constexpr std::uint64_t quick_splits = 256;
@@ -179,8 +179,8 @@ class RayWalk {
         monitor_.checkpoint();
         const SeenPiece piece = seen(node);
         const LinePieceCrossing crossing = piece.crossing({}, 0, task_.precision);
-        if (crossing.state == State::none || outside(crossing.along, end)) continue;
-        const bool hit = crossing.state == State::one && within(crossing.along);
+        if (crossing.state == CrossingState::none || outside(crossing.along, end)) continue;
+        const bool hit = crossing.state == CrossingState::one && within(crossing.along);
         if (hit) {
           const bool narrow = is_located(crossing.along);
           if (narrow || task_.query == RayQuery::any) {
@@ -247,7 +247,7 @@ class RayWalk {
         monitor_.checkpoint();
         const SeenPiece piece = seen(node);
         LinePieceCrossing near = piece.crossing({}, reach);
-        if (near.state == State::none) continue;
+        if (near.state == CrossingState::none) continue;
         // Its boxes begin there, so that groups follow one another.
         near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
         if (near.along.upper < near.along.lower || outside(near.along, upper_ + reach)) continue;
@@ -331,8 +331,8 @@ class RayWalk {
     Count result;
     for (const Leaf& leaf : group) {
       const LinePieceCrossing crossing = leaf.seen.crossing(place, 0);
-      if (crossing.state == State::none) continue;
-      if (crossing.state != State::one) return std::nullopt;
+      if (crossing.state == CrossingState::none) continue;
+      if (crossing.state != CrossingState::one) return std::nullopt;
       result.number += crossing.side;
       result.leaf = &leaf;
       result.at = crossing.at;

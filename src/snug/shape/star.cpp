@@ -12,6 +12,7 @@
 #include <snug/scheme/bezier.h>
 #include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/corner_rings.h>
+#include <snug/shape/point2.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -27,12 +28,6 @@ constexpr unsigned polynomial_levels = 2, decay_levels = 6;
 constexpr double max_net_share = 0.02;
 // Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
 constexpr double layout_grain = 0x1p-20;
-
-struct Point2 {
-  double x = 0, y = 0;
-};
-Point2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 
 // A sector as it is seen along two vectors: control values (f1, f2, 0), its triangle in the layout, and which
 // of its edges lie on the border of the star: bit k the one from corner k to k + 1.

@@ -10,6 +10,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/bezier.h>
 #include <snug/shape/corner_asymptotics.h>
+#include <snug/shape/point2.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -26,20 +27,15 @@ constexpr double max_push = 1.6;
 constexpr double min_sine = 0.02, min_side = 0x1p10;
 // Rounding and the layout's own error, against products of sizes: see derivations/self_contact.md.
 constexpr double layout_slack = 0x1p-20;
-constexpr unsigned max_rings = 40, plain_levels = 2;
+constexpr unsigned max_net_rings = 40, plain_levels = 2;
 // Largest factor by which a net that stands for all further rings may widen the bounds of those before: its error
 // shrinks from ring to ring.
 constexpr double widening = 1.3;
 // Eigenvalues are known this well, and equal ones are equal up to this.
 constexpr double eigenvalue_error = 1e-10, same_eigenvalue = 1e-9;
 
-struct Point2 {
-  double x = 0, y = 0;
-};
 Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
-Point2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 Point2 operator*(double s, Point2 a) { return {s * a.x, s * a.y}; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 double size_of(Point2 a) { return std::hypot(a.x, a.y); }
 
 using Places = std::array<Point2, 3>;
@@ -229,7 +225,7 @@ class StretchCheck {
     const CharacteristicMap& tip = *asymptotics_of(*patch.kind).characteristic_map();
     Derivatives all;
     double scale = 1;
-    for (unsigned ring = 0; ring < max_rings; ++ring, scale /= cut.eigenvalue) {
+    for (unsigned ring = 0; ring < max_net_rings; ++ring, scale /= cut.eigenvalue) {
       all.add(of_ring(patch, places, cut, scale));
       if (!(all.least > 0)) return unknown;
       const Derivatives others = of_ring(tip.limit_nets(patch).net, places, cut, scale);

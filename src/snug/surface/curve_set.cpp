@@ -7,7 +7,7 @@
 
 namespace snug {
 
-CurveSet::CurveSet(ControlMesh mesh, CurveDegree degree) : mesh_(std::move(mesh)), degree_(degree) {
+CurveSet::Edges::Edges(ControlMesh mesh, CurveDegree degree) : mesh_(std::move(mesh)), degree_(degree) {
   require_curves(mesh_);
   Box3 box;
   for (const VertexId v : mesh_.polyline_vertices) box.add(mesh_.points[v.index()]);
@@ -25,7 +25,7 @@ CurveSet::CurveSet(ControlMesh mesh, CurveDegree degree) : mesh_(std::move(mesh)
   }
 }
 
-CurvePiece CurveSet::piece(EdgeId edge) const {
+CurvePiece CurveSet::Edges::piece(EdgeId edge) const {
   require_value(edge.index() < edges_.size(),
                 "curves: there is no such edge; they count from 0 to edge_count() - 1");
   const Window& window = edges_[edge.index()];
@@ -34,5 +34,15 @@ CurvePiece CurveSet::piece(EdgeId edge) const {
   return make_curve_piece(degree_, neighbour(window.before), point(window.from), point(window.to),
                           neighbour(window.after));
 }
+
+CurveSet::CurveSet(ControlMesh mesh, CurveDegree degree)
+    : edges_(std::make_shared<const Edges>(std::move(mesh), degree)) {}
+CurveSet::CurveSet(const CurveSet&) noexcept = default;
+CurveSet& CurveSet::operator=(const CurveSet&) noexcept = default;
+CurveSet::~CurveSet() = default;
+const ControlMesh& CurveSet::mesh() const { return edges_->mesh(); }
+CurveDegree CurveSet::degree() const { return edges_->degree(); }
+double CurveSet::size() const { return edges_->size(); }
+std::size_t CurveSet::edge_count() const { return edges_->count(); }
 
 }  // namespace snug

@@ -6,6 +6,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/surface/curve_set.h>
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/error.h>
@@ -225,11 +226,12 @@ std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Place&
   return result;
 }
 
-CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t) {
-  const PowerOfTwo back = curves.scale().inverse();
-  const CurvePiece piece = curves.piece(edge);
-  const CurvePoint point = curve_point(piece, t);
-  return {unscaled(point.point.from(piece.origin), back), require_representable(back.apply(point.tangent))};
+CurvePoint evaluate(const CurveSet& curves, EdgeId edge, double t) {
+  const PowerOfTwo back = curves.edges().scale().inverse();
+  const CurvePiece piece = curves.edges().piece(edge);
+  const CurvePiecePoint found = curve_point(piece, t);
+  const BoundedPoint point = unscaled(found.point.from(piece.origin), back);
+  return {point.position, point.error, require_representable(back.apply(found.tangent))};
 }
 
 }  // namespace snug

@@ -8,7 +8,6 @@
 #include <snug/geometry/motion.h>
 #include <snug/patch/limit_evaluator.h>
 #include <snug/patch/patch.h>
-#include <snug/surface/curve_set.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
@@ -75,14 +74,5 @@ class PatchEvaluator {
   Patch patch_;
   PowerOfTwo back_;
 };
-
-/// A limit point of a curve in mesh units, and the derivative there along t.
-struct CurveSetPoint : BoundedPoint {
-  Vector3 tangent;  ///< in double precision without a bound; 0 where the curve has none
-};
-
-/// The limit point of an edge at exactly this t: 0 at the limit of its first vertex, 1 at that of the second.
-/// InputError (value) unless edge < curves.edge_count() and 0 <= t <= 1.
-[[nodiscard]] CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t);
 
 }  // namespace snug

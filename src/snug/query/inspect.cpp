@@ -1,18 +1,25 @@
-#include "mesh_counts.h"
+#include <snug/inspect.h>
 
 #include <algorithm>
 #include <array>
 #include <cfloat>
 #include <cmath>
 #include <utility>
-#include <vector>
 
+#include <snug/bounds/fit_kernels.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/half_edges.h>
+#include <snug/mesh/loose_creases.h>
 #include <snug/mesh/weld.h>
+#include <snug/query/nesting.h>
+#include <snug/query/smoothing_note.h>
+#include <snug/scheme/rules.h>
+#include <snug/search/surface_data.h>
+#include <support/error.h>
+#include <support/run.h>
 
-namespace snug::command {
+namespace snug {
 namespace {
 
 using Edge = std::pair<VertexId, VertexId>;
@@ -21,7 +28,7 @@ bool has_vertices_of(const ControlMesh& mesh, std::span<const VertexId> face) {
   return std::all_of(face.begin(), face.end(), [&](VertexId v) { return v.index() < mesh.vertex_count(); });
 }
 
-/// The mesh without faces that name vertices it does not have, and without anything else but faces.
+// The mesh without faces that name vertices it does not have, and without anything else but faces.
 ControlMesh sound_faces(const ControlMesh& mesh) {
   ControlMesh sound;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -33,7 +40,7 @@ ControlMesh sound_faces(const ControlMesh& mesh) {
 
 using Box = std::array<Point3, 2>;
 
-/// The boxes around the components: of the vertices of faces that are joined.
+// The boxes around the components: of the vertices of faces that are joined.
 std::vector<Box> component_boxes(const ControlMesh& faces, const std::vector<Point3>& points) {
   DisjointSets joined(points.size());
   for (std::size_t f = 0; f < faces.face_count(); ++f) {
@@ -59,8 +66,9 @@ std::vector<Box> component_boxes(const ControlMesh& faces, const std::vector<Poi
   return boxes;
 }
 
-/// Each with those that begin, along x, before it ends.
+// Each with those that begin, along x, before it ends.
 bool any_meet(std::vector<Box> boxes) {
+  std::erase_if(boxes, [](const Box& box) { return !is_finite(box[0]) || !is_finite(box[1]); });
   std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a[0].x < b[0].x; });
   const auto meet = [](const Box& a, const Box& b) {
     return a[0].y <= b[1].y && b[0].y <= a[1].y && a[0].z <= b[1].z && b[0].z <= a[1].z;
@@ -73,14 +81,14 @@ bool any_meet(std::vector<Box> boxes) {
   return false;
 }
 
-/// Ends of an edge.
+// Ends of an edge.
 Edge ends_of(const ControlMesh& mesh, const HalfEdgeGroups& groups, EdgeId e) {
   const HalfEdge h = groups.of_edge(e)[0];
   return {mesh.face_vertices[h], mesh.face_vertices[next_in_face(mesh.face_offsets, groups.face(h), h)]};
 }
 
-/// Certainly true if no edge has one face and edges of two have them turned alike, but for one chance in
-/// 2^64: a sum over directed edges that opposite ones take out of it.
+// Certainly true if no edge has one face and edges of two have them turned alike, but for one chance in
+// 2^64: a sum over directed edges that opposite ones take out of it.
 bool looks_closed(const ControlMesh& mesh) {
   std::uint64_t sum = 0;
   const auto mixed = [](VertexId a, VertexId b) {
@@ -107,7 +115,7 @@ std::vector<Edge> boundary_edges(const ControlMesh& mesh) {
   return edges;
 }
 
-/// For each used vertex the first that stands where it does.
+// For each used vertex the first that stands where it does.
 std::vector<VertexId> first_in_place(const ControlMesh& mesh, const std::vector<bool>& used) {
   std::vector<VertexId> vertices;
   std::vector<Point3> points;
@@ -159,7 +167,10 @@ void find_near_vertices(const ControlMesh& mesh, const std::vector<Edge>& bounda
 
 }  // namespace
 
-MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) {
+bool scheme_answers(Scheme scheme, DefectKind kind) { return rules_of(scheme).answers(kind); }
+
+MeshCounts count_elements(const ControlMesh& mesh, Scheme scheme) {
+  const SchemeTraits& traits = traits_of(scheme);
   const ControlMesh faces = sound_faces(mesh);
   const HalfEdgeGroups groups(faces.face_offsets, faces.face_vertices, mesh.vertex_count());
   MeshCounts result;
@@ -178,6 +189,7 @@ MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) 
                                      [&, start = a](HalfEdge h) { return faces.face_vertices[h] == start; });
     ++valence[a.index()];
     ++valence[b.index()];
+    result.many_sided_edges += members > 2;
     result.closed = result.closed && (a == b || 2 * static_cast<std::size_t>(forth) == members);
     if (members == 1) {
       ++result.boundary_edges;
@@ -189,17 +201,13 @@ MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) 
     const std::size_t n = valence[v];
     result.min_valence = result.used_vertices++ == 0 ? n : std::min(result.min_valence, n);
     result.max_valence = std::max(result.max_valence, n);
-    result.extraordinary += n != (boundary[v] ? regular_valence / 2 + 1 : regular_valence);
+    const std::size_t regular = boundary[v] ? traits.regular_valence / 2 + 1 : traits.regular_valence;
+    result.extraordinary += !traits.dual && n != regular;
   }
+  for (std::size_t f = 0; traits.dual && f < mesh.face_count(); ++f)
+    result.extraordinary += mesh.face(FaceId(f)).size() != traits.regular_valence;
+  result.creases = mesh.tags.creases.size() - loose_creases(mesh).size();
   return result;
-}
-
-bool has_edges_of_many_faces(const ControlMesh& mesh) {
-  const HalfEdgeGroups groups(mesh.face_offsets, mesh.face_vertices, mesh.vertex_count());
-  for (std::size_t e = 0; e < groups.edge_count(); ++e) {
-    if (groups.of_edge(EdgeId(e)).size() > 2) return true;
-  }
-  return false;
 }
 
 Coincidences coincidences(const ControlMesh& mesh) {
@@ -230,4 +238,28 @@ Coincidences coincidences(const ControlMesh& mesh) {
   return found;
 }
 
-}  // namespace snug::command
+std::string smoothing_note(const Surface& surface, std::string_view option, std::optional<double> apart,
+                           const Run& run) {
+  return smoothing_note(surface.data()->limit(), option, apart, run.threads);
+}
+
+std::optional<std::uint32_t> overlapping_shell(const Surface& surface, const Run& run) {
+  const std::optional<PatchId> patch = wound_twice(surface.data()->bvh(monitor_of(run)), monitor_of(run));
+  return patch ? std::optional(surface.data()->limit().place(*patch).owner) : std::nullopt;
+}
+
+std::optional<std::uint32_t> topology_of(const Surface& surface, const PatchPlace& patch) {
+  const LimitSurface& limit = surface.data()->limit();
+  const auto known = [&] {
+    if (patch.owner >= limit.owner_count()) return false;
+    const LimitSurface::PatchRange range = limit.patches_of(patch.owner);
+    return patch.part < range.end - range.begin && limit.has_patch(PatchId(range.begin + patch.part));
+  };
+  require_value(known(), "topology_of: the surface has no such patch");
+  const Kind& kind = limit.kind(PatchId(limit.patches_of(patch.owner).begin + patch.part));
+  return kind.polynomial() ? std::nullopt : std::optional(kind.id().value());
+}
+
+const char* instruction_set() { return kernels::instruction_set(); }
+
+}  // namespace snug
