@@ -441,6 +441,9 @@ def read(
     progress: Progress = None,
 ) -> Surface: ...
 def _pose(pose: Pose, name: str, rigid: Optional[str] = None) -> Floats: ...
+def _near_pairs(
+    surfaces: Sequence[Surface], poses: Pose, first: Optional[int], reach: float
+) -> Tuple[Ids, Ids, Floats]: ...
 def collide(
     a: Surface,
     b: Surface,

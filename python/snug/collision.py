@@ -13,13 +13,13 @@ triangles is what these triangles are, as in trimesh; scheme= and sharp= make a 
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, FrozenSet, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple, Union
+from typing import Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Set, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ._errors import UndecidedError
-from ._snug import Collision, Distance, Surface, _pose, collide, distance, penetration
+from ._snug import Collision, Distance, Surface, _near_pairs, _pose, collide, distance, penetration
 from .proximity import Sharp, as_surface
 
 Floats = npt.NDArray[np.float64]
@@ -33,8 +33,6 @@ class _Placed(NamedTuple):
     name: str
     surface: Surface
     pose: Floats
-    lower: Floats  # a box around it, generously
-    upper: Floats
 
 
 def _placed(name: str, surface: Surface, transform: Optional[npt.ArrayLike], rigid: Optional[str] = None) -> _Placed:
@@ -43,54 +41,38 @@ def _placed(name: str, surface: Surface, transform: Optional[npt.ArrayLike], rig
         given = np.asarray(transform)
         if given.shape != (4, 4):
             raise ValueError(f"transform has the shape {given.shape}; give (4, 4)")
-        # Here, not at the first query: boxes placed by what is not rigid would rule pairs out.
-        pose = _pose(given, f"the transform of {name!r}", rigid)
-    vertices = surface.vertices
-    world = vertices @ pose[:3, :3].T + pose[:3, 3]
-    room = 1e-9 * (np.abs(world).max(initial=0.0) + np.abs(vertices).max(initial=0.0) + np.abs(pose[:3, 3]).max())
-    return _Placed(name, surface, pose, world.min(axis=0) - room, world.max(axis=0) + room)
+        pose = _pose(given, f"the transform of {name!r}", rigid)  # here, not at the first query
+    return _Placed(name, surface, pose)
 
 
-class _Group:
-    """Objects, and their boxes in arrays."""
+class _Pair(NamedTuple):
+    a: _Placed
+    b: _Placed
+    gap: float  # a lower bound of their distance, from boxes
 
-    def __init__(self, objects: Sequence[_Placed]) -> None:
-        self.objects = objects
-        self.lower = np.array([each.lower for each in objects]).reshape(-1, 3)
-        self.upper = np.array([each.upper for each in objects]).reshape(-1, 3)
-        self.sizes = np.array([each.surface.size for each in objects])
-
-
-class _Row(NamedTuple):
-    """An object, and those of a group from `begin` on."""
-
-    one: _Placed
-    group: _Group
-    begin: int
-
-    def gaps(self) -> Floats:
-        """Lower bounds of distances by boxes: a limit surface lies in the box of its vertices."""
-        lower, upper = self.group.lower[self.begin :], self.group.upper[self.begin :]
-        apart = np.maximum(np.maximum(self.one.lower - upper, lower - self.one.upper), 0.0)
-        gaps: Floats = np.linalg.norm(apart, axis=1) * (1 - 1e-12)
-        return np.nan_to_num(gaps, nan=0.0, posinf=np.inf)  # boxes beyond the range of doubles rule nothing out
-
-    def sizes(self) -> Floats:
-        """The larger one's, of each pair."""
-        return np.maximum(self.one.surface.size, self.group.sizes[self.begin :])
-
-    def other(self, i: int) -> _Placed:
-        return self.group.objects[self.begin + i]
+    def size(self) -> float:
+        """The larger one's."""
+        return max(self.a.surface.size, self.b.surface.size)
 
 
-def _internal(objects: Sequence[_Placed]) -> Iterator[_Row]:
-    group = _Group(objects)
-    return (_Row(each, group, i + 1) for i, each in enumerate(objects))
+class _Pairs(NamedTuple):
+    """Each two of some objects or, with `others`, each of these with each of the others."""
 
+    objects: List[_Placed]
+    others: Optional[List[_Placed]] = None
 
-def _between(objects: Sequence[_Placed], others: Sequence[_Placed]) -> Iterator[_Row]:
-    group = _Group(others)
-    return (_Row(each, group, 0) for each in objects)
+    def nearer_than(self, reach: float) -> Iterator[_Pair]:
+        """The pairs that boxes around them do not keep farther apart."""
+        parts = self.objects + (self.others or [])
+        if not parts:
+            return
+        first = None if self.others is None else len(self.objects)
+        poses = np.array([each.pose for each in parts])
+        for i, j, gap in zip(*_near_pairs([each.surface for each in parts], poses, first, reach)):
+            yield _Pair(parts[i], parts[j], float(gap))
+
+    def largest_size(self) -> float:
+        return max((each.surface.size for each in self.objects + (self.others or [])), default=0.0)
 
 
 class ContactData:
@@ -215,12 +197,12 @@ class CollisionManager:
         ContactData.
         """
         other = self._place(_EXTERNAL, self._surface(mesh), transform)
-        found = list(self._contacts(_between(self._all(), [other]), return_names or return_data))
+        found = list(self._contacts(_Pairs(self._all(), [other]), return_names or return_data))
         return self._answer(found, {a.name for a, _, _ in found}, return_names, return_data)
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Do any two objects touch? As in_collision_single(), with pairs of names in alphabetical order."""
-        found = list(self._contacts(_internal(self._all()), return_names or return_data))
+        found = list(self._contacts(_Pairs(self._all()), return_names or return_data))
         names = {(min(a.name, b.name), max(a.name, b.name)) for a, b, _ in found}
         return self._answer(found, names, return_names, return_data)
 
@@ -228,7 +210,7 @@ class CollisionManager:
         self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Does any object touch one of another manager? As above; pairs begin with the name in this one."""
-        found = list(self._contacts(_between(self._all(), other_manager._all()), return_names or return_data))
+        found = list(self._contacts(_Pairs(self._all(), other_manager._all()), return_names or return_data))
         return self._answer(found, {(a.name, b.name) for a, b, _ in found}, return_names, return_data)
 
     def min_distance_single(
@@ -237,12 +219,12 @@ class CollisionManager:
         """How far a surface is from the objects, at least; with return_name also the nearest one's name, with
         return_data also DistanceData."""
         other = self._place(_EXTERNAL, self._surface(mesh), transform)
-        return self._nearest(_between(self._all(), [other]), return_name, return_data, lambda a, b: a)
+        return self._nearest(_Pairs(self._all(), [other]), return_name, return_data, lambda a, b: a)
 
     def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """How far any two objects are apart, at least; with names as in in_collision_internal()."""
         return self._nearest(
-            _internal(self._all()), return_names, return_data, lambda a, b: (min(a, b), max(a, b))
+            _Pairs(self._all()), return_names, return_data, lambda a, b: (min(a, b), max(a, b))
         )
 
     def min_distance_other(
@@ -250,7 +232,7 @@ class CollisionManager:
     ) -> Any:
         """How far the objects are from another manager's, at least; with names as in in_collision_other()."""
         return self._nearest(
-            _between(self._all(), other_manager._all()), return_names, return_data, lambda a, b: (a, b)
+            _Pairs(self._all(), other_manager._all()), return_names, return_data, lambda a, b: (a, b)
         )
 
     def _surface(self, mesh: Any) -> Surface:
@@ -268,32 +250,33 @@ class CollisionManager:
     def _all(self) -> List[_Placed]:
         return list(self._objects.values())
 
-    def _contacts(self, rows: Iterable[_Row], all_of_them: bool) -> Iterator[Tuple[_Placed, _Placed, Collision]]:
+    def _contacts(self, pairs: _Pairs, all_of_them: bool) -> Iterator[Tuple[_Placed, _Placed, Collision]]:
         undecided: Optional[UndecidedError] = None
-        for row in rows:
-            for i in np.flatnonzero(row.gaps() <= self._reach(row)):
-                a, b = row.one, row.other(int(i))
-                hit = collide(
-                    a.surface, b.surface, pose_a=a.pose, pose_b=b.pose, tolerance=self._tolerance, solid=self._solid
-                )
-                try:
-                    touch = bool(hit)
-                except UndecidedError as error:
-                    undecided = UndecidedError(f"{a.name!r} and {b.name!r}: {error}")
-                    continue
-                if touch:
-                    yield a, b, hit
-                    if not all_of_them:
-                        return
+        for pair in pairs.nearer_than(self._reach(pairs.largest_size())):
+            a, b = pair.a, pair.b
+            if pair.gap > self._reach(pair.size()):
+                continue
+            hit = collide(
+                a.surface, b.surface, pose_a=a.pose, pose_b=b.pose, tolerance=self._tolerance, solid=self._solid
+            )
+            try:
+                touch = bool(hit)
+            except UndecidedError as error:
+                undecided = UndecidedError(f"{a.name!r} and {b.name!r}: {error}")
+                continue
+            if touch:
+                yield a, b, hit
+                if not all_of_them:
+                    return
         if undecided is not None:
             raise undecided
 
-    def _reach(self, row: _Row) -> Floats:
-        """At least the tolerance for each of a row's pairs, mesh units."""
+    def _reach(self, size: float) -> float:
+        """At least the tolerance for a pair whose larger object has this size, mesh units."""
         text = str(self._tolerance).strip()
         if text.endswith("%"):
-            return 1.01 * float(text[:-1]) / 100 * row.sizes()
-        return np.broadcast_to(float(text), row.sizes().shape)
+            return 1.01 * float(text[:-1]) / 100 * size
+        return float(text)
 
     def _answer(
         self, found: List[Tuple[_Placed, _Placed, Collision]], names: Names, return_names: bool, return_data: bool
@@ -307,15 +290,14 @@ class CollisionManager:
 
     def _nearest(
         self,
-        rows: Iterable[_Row],
+        pairs: _Pairs,
         return_names: bool,
         return_data: bool,
         named: Callable[[str, str], Any],
     ) -> Any:
-        near = [(float(gap), row.one, row.other(i)) for row in rows for i, gap in enumerate(row.gaps())]
         best: Optional[Tuple[_Placed, _Placed, Distance]] = None
         lower = np.inf
-        for gap, a, b in sorted(near, key=lambda each: each[0]):
+        for a, b, gap in sorted(pairs.nearer_than(np.inf), key=lambda each: each.gap):
             if gap >= lower:
                 break
             found = distance(

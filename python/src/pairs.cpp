@@ -4,6 +4,7 @@
 
 #include <snug/collide.h>
 #include <snug/distance.h>
+#include <snug/scene.h>
 
 #include "answers.h"
 #include "call.h"
@@ -113,6 +114,39 @@ Answers<Penetration> penetration_of_surfaces(const PySurface& a, const PySurface
         }
         return answers;
       });
+}
+
+// The pairs of parts that boxes do not separate by more than `reach`, and lower bounds of their distances: every two, or
+// each of the `first` ones with each of the others.
+py::tuple near_pairs(const py::sequence& surfaces, const py::object& given, const py::object& first,
+                     double reach) {
+  const Poses poses(given, "poses", py::none());
+  Scene scene;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    scene.parts.push_back(surfaces[i].cast<const PySurface&>().surface().at(poses.at(i)));
+  }
+  if (!first.is_none()) {
+    scene.pairs.emplace();
+    const auto begin = first.cast<std::uint32_t>();
+    for (std::uint32_t a = 0; a < begin; ++a) {
+      for (std::uint32_t b = begin; b < scene.parts.size(); ++b) scene.pairs->push_back({a, b});
+    }
+  }
+  Call call;
+  const std::vector<ScenePair> found = call.run([&](const Run& run) {
+    SceneBroadPhase broad(scene, std::min(reach, std::numeric_limits<double>::max()), std::isinf(reach), run);
+    return broad.next(broad.pair_count());
+  });
+  const auto count = static_cast<py::ssize_t>(found.size());
+  py::array_t<std::uint32_t> a(count), b(count);
+  py::array_t<double> gaps(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const ScenePair& pair = found[static_cast<std::size_t>(i)];
+    a.mutable_at(i) = pair.parts.a;
+    b.mutable_at(i) = pair.parts.b;
+    gaps.mutable_at(i) = pair.gap;
+  }
+  return py::make_tuple(a, b, gaps);
 }
 
 // ", budget-spent" and the like.
@@ -356,6 +390,9 @@ void add_pair_queries(py::module_& module) {
               "Guarantee: [lower, upper] contains the distance, whatever the outcome.\n"
               "Raises as collide().")
                  .c_str());
+  module.def(
+      "_near_pairs", near_pairs, arg("surfaces"), arg("poses"), arg("first"), arg("reach"),
+      "For collision.py: pairs of parts that boxes do not separate, and lower bounds of their distances.");
   module.def("_pose", matrix_of_pose, arg("pose"), arg("name"),
              arg("rigid") = none);  // for the package alone
   module.def("penetration", penetration_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
