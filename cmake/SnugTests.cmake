@@ -1,10 +1,11 @@
-#   snug_test(NAME SOURCES a_test.cpp ... [LINK target ...] [LABEL fast|slow|threads] [TIMEOUT seconds] [FILTER glob])
+#   snug_test(NAME SOURCES a_test.cpp ... [LINK target ...] [LABEL fast|release|slow|threads] [TIMEOUT seconds] [FILTER glob])
 #
 # One executable, bin/tests/NAME; each TEST in it is a line of ctest, "<folder>.<suite>.<claim>". The library with its
 # private headers is linked without being named. The label chooses where a test runs besides `make test`:
 #
 #   fast      under address sanitizer too; the default
-#   slow      on the release build only
+#   release   on the release build only: programs and libraries of research, which read no files of strangers
+#   slow      on the release build only, and optimized
 #   threads   under thread sanitizer only
 #
 # Sources are compiled several in a unit, so each has a namespace of its own: namespace snug::a_test { namespace { ... }}.
@@ -23,7 +24,7 @@ function(snug_test name)
   if(NOT ARG_LABEL)
     set(ARG_LABEL fast)
   endif()
-  if(NOT ARG_LABEL MATCHES "^(fast|slow|threads)$")
+  if(NOT ARG_LABEL MATCHES "^(fast|release|slow|threads)$")
     message(FATAL_ERROR "snug_test(${name}): unknown label ${ARG_LABEL}")
   endif()
   if(NOT ARG_TIMEOUT)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
+#include <testing/counts.h>
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
 
@@ -175,7 +176,7 @@ TEST(wide_node, distances_to_a_box_of_another_never_exceed_those_of_the_contents
   std::mt19937_64 random(27);
   std::array<std::size_t, 2> gaps{}, tight{};
   std::size_t dropped = 0, total = 0, axis_alone = 0, line_alone = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(3000)); ++trial) {
     const TwoNodes two(random);
     if (!two.view.frame.comparable) continue;
     const auto in_a = two.images(0), in_b = two.images(1);

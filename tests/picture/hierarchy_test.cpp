@@ -1,6 +1,7 @@
 #include <picture/hierarchy.h>
 
 #include <gtest/gtest.h>
+#include <testing/counts.h>
 
 #include <algorithm>
 #include <random>
@@ -32,7 +33,7 @@ TEST(hierarchy, finds_every_box_with_a_point_in_the_beam) {
     boxes.push_back(box);
   }
   const BeamHierarchy hierarchy(boxes);
-  for (int trial = 0; trial < 500; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(500)); ++trial) {
     SCOPED_TRACE(trial);
     const double x = unit(random), y = unit(random), limit = 3 * share(random);
     const Beam beam{x, x + 0.05, y, y + 0.05};

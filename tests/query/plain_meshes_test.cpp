@@ -102,7 +102,7 @@ Motion moved_by(const ExactPoint& by) {
 TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
   std::mt19937_64 random(12);
   std::size_t met = 0, pierced = 0, proved = 0, apart = 0;
-  for (int trial = 0; trial < 4000 && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(4000)) && !HasFailure(); ++trial) {
     const auto some = [&] { return std::size_t{1} + random() % (trial % 3 == 0 ? 1 : 9); };
     const std::int64_t extent = trial % 2 == 0 ? 60 : 3;  // on a small lattice many touch
     const Soup a(random, some(), trial % 8 >= 4, extent), b(random, some(), trial % 16 >= 12, extent);
@@ -138,8 +138,8 @@ TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
   }
   std::cout << "  " << apart << " apart, " << met << " meet, " << pierced
             << " with an edge through a triangle, " << proved << " of these proved\n";
-  EXPECT_GT(apart, 500u);
-  EXPECT_GT(met - pierced, 50u);
+  EXPECT_GT(apart, testing::fewer(500));
+  EXPECT_GT(met - pierced, testing::fewer(50));
   EXPECT_GT(20 * proved, 19 * pierced);
 }
 

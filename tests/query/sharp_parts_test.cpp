@@ -15,10 +15,12 @@
 #include <testing/counts.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "testing/verdict_only.h"
@@ -328,7 +330,8 @@ TEST(sharp_parts, a_pin_in_a_hole_has_the_clearance_of_the_polygons) {
   const LimitSurface plate = sharp(testing::perforated_plate(2, 2, 30, 5.2, 8, 96));
   const LimitSurface pin = sharp(testing::pin(5, 0, 60, 96, true));
   const double clearance = 0.2 * std::cos(std::numbers::pi / 96);
-  for (const double z : {-20.0, 0.0, -60.0}) {
+  constexpr std::array heights{-20.0, 0.0, -60.0};
+  for (const double z : std::span(heights).first(testing::fewer(heights.size()))) {
     const Distance found = distance_of(plate, pin, {15, 15, z});
     EXPECT_LE(found.distance.lower, clearance + 1e-9);
     EXPECT_GE(found.distance.upper, clearance - 1e-9);

@@ -3,6 +3,7 @@
 #include <snug/scheme/rules.h>
 
 #include <gtest/gtest.h>
+#include <testing/counts.h>
 
 #include <cmath>
 #include <numbers>
@@ -41,7 +42,7 @@ Mask limit_mask(std::size_t n) {
 }
 
 TEST(loop_masks, sum_to_one_and_are_not_negative) {
-  for (std::size_t n = 3; n <= 1000; ++n) {
+  for (std::size_t n = 3; n <= testing::fewer(1000); ++n) {
     for (const Mask& mask : {vertex_mask(n), limit_mask(n)}) {
       const long double sum = mask.centre + static_cast<long double>(n) * mask.each;
       EXPECT_LE(std::fabs(sum - 1), mask.error + 1e-18L) << n;
@@ -53,7 +54,7 @@ TEST(loop_masks, sum_to_one_and_are_not_negative) {
 }
 
 TEST(loop_masks, contain_the_formula) {
-  for (std::size_t n = 3; n <= 1000; ++n) {
+  for (std::size_t n = 3; n <= testing::fewer(1000); ++n) {
     const auto count = static_cast<long double>(n);
     const long double c = std::cos(2 * std::numbers::pi_v<long double> / count);
     const long double a = 0.625L - (3 + 2 * c) * (3 + 2 * c) / 64;
@@ -67,7 +68,7 @@ TEST(loop_masks, contain_the_formula) {
 
 // The limit mask w is a left eigenvector: applying the step first changes nothing.
 TEST(loop_masks, limits_are_kept_by_a_step) {
-  for (std::size_t n = 3; n <= 1000; ++n) {
+  for (std::size_t n = 3; n <= testing::fewer(1000); ++n) {
     const Mask step = vertex_mask(n), limit = limit_mask(n);
     // Ring to ring: each new ring vertex takes 3/8 of the centre and 5/8 of the ring in sum.
     const double centre = limit.centre * step.centre + static_cast<double>(n) * limit.each * 0.375;

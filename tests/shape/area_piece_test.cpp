@@ -120,7 +120,7 @@ Coefficients random_normal(int kind, Domain domain, std::mt19937_64& random) {
 TEST(area_piece, holds_the_area_however_it_is_split) {
   std::mt19937_64 random(1);
   for (const Domain domain : {Domain::triangle, Domain::square}) {
-    for (int trial = 0; trial < 160; ++trial) {
+    for (int trial = 0; trial < static_cast<int>(testing::fewer(160)); ++trial) {
       const Coefficients normal = random_normal(trial % 8, domain, random);
       const auto [truth, error] = area(domain, normal);
       std::vector<AreaPiece> pieces{AreaPiece(domain, normal, 0)};

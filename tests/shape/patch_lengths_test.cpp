@@ -7,13 +7,16 @@
 #include <snug/patch/evaluate.h>
 #include <snug/shape/star_distortion.h>
 #include <snug/surface/level_complex.h>
+#include <testing/counts.h>
 #include <testing/tagged.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <random>
+#include <span>
 
 namespace snug::patch_lengths_test {
 namespace {
@@ -118,7 +121,8 @@ double stretch_at(const LimitSurface& surface, const LevelVertex& vertex, unsign
 
 TEST(star_distortion, of_smooth_vertices_is_small_and_of_folds_what_their_angle_says) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
-    for (const double degrees : {10.0, 45.0, 90.0, 170.0}) {
+    constexpr std::array angles{45.0, 10.0, 90.0, 170.0};
+    for (const double degrees : std::span(angles).first(testing::fewer(angles.size()))) {
       oracle::TaggedMesh mesh = meshes::quad_grid(4, 4);
       if (scheme == Scheme::loop) mesh = meshes::triangulated(mesh);
       const double half = degrees / 2 * std::numbers::pi / 180;

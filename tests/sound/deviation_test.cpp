@@ -5,7 +5,7 @@
 //
 // asks about so many pairs; SNUG_FIRST=N begins with pair N.
 
-#include <snug/deviation.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <oracle/hausdorff_twin.h>
@@ -43,7 +43,7 @@ constexpr std::array precisions{1e-2, 1e-3, 1e-4, 1e-5};
 // Enough for nearly all, and an end of the others.
 constexpr std::uint64_t budget = 50'000;
 const Run one_thread{.threads = 1, .max_splits = budget}, three_threads{.threads = 3, .max_splits = budget};
-constexpr std::uint64_t usual_trials = 800;
+constexpr std::uint64_t usual_trials = 500, usual_curved = 800;
 
 /// Scales to the ends of the doubles, and far away.
 struct Disguise {
@@ -455,8 +455,10 @@ constexpr std::array beside_names{"tessellation", "moved",          "a corner mo
 std::optional<TriangleSet> make_beside(Beside kind, const Curved& c, const Surface& surface,
                                        std::mt19937_64& random) {
   const auto level = 1 + static_cast<unsigned>(random() % 2);
-  TriangleSet set =
-      testing::triangles_of(kind == Beside::cage ? surface.mesh() : subdivided(surface, level, true));
+  TriangleSet set = testing::triangles_of(
+      kind == Beside::cage ? surface.mesh()
+                           : subdivided(surface.mesh(), level, true,
+                                        {.scheme = surface.scheme(), .boundary = surface.boundary()}));
   if (set.empty()) return std::nullopt;
   const auto make = [&](CandidateKind other) { return testing::make_candidate(other, set, 1, random); };
   switch (kind) {
@@ -629,7 +631,7 @@ void check_surfaces(const Curved& a, const Surface& surface, const Curved& b, do
 }
 
 TEST(deviation, of_curved_surfaces_is_not_below_what_points_say) {
-  const std::uint64_t trials = number_of("SNUG_PLACEMENTS", usual_trials) / 4,
+  const std::uint64_t trials = number_of("SNUG_PLACEMENTS", usual_curved) / 4,
                       first = number_of("SNUG_FIRST", 0);
   CurvedCounts counts;
   testing::PairsDrawn pairs({4, beside_names.size(), precisions.size(), powers.size()});
@@ -667,12 +669,12 @@ TEST(deviation, of_curved_surfaces_is_not_below_what_points_say) {
             << " not as narrow as asked; " << pairs.missing() << " pairs of choices not drawn\n";
   EXPECT_GT(10 * counts.asked, 8 * trials);
   EXPECT_LE(50 * counts.unreached, counts.asked + 50);
-  EXPECT_TRUE(trials < usual_trials / 4 || pairs.missing() == 0);
+  EXPECT_TRUE(trials < usual_curved / 4 || pairs.missing() == 0);
 }
 
 // Points of candidates near solids of every scheme: the twin tells on which side they are.
 TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
-  const std::uint64_t solids = number_of("SNUG_PLACEMENTS", usual_trials) / 20,
+  const std::uint64_t solids = number_of("SNUG_PLACEMENTS", usual_curved) / 20,
                       first = number_of("SNUG_FIRST", 0);
   CurvedCounts counts;
   for (std::uint64_t i = first; i < first + solids && !HasFailure(); ++i) {
@@ -682,7 +684,8 @@ TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
     try {
       surface.emplace(testing::control_mesh(c),
                       SurfaceOptions{.scheme = c.options.scheme, .boundary = c.options.boundary});
-      TriangleSet set = testing::triangles_of(subdivided(*surface, 1, true));
+      TriangleSet set = testing::triangles_of(subdivided(
+          surface->mesh(), 1, true, {.scheme = surface->scheme(), .boundary = surface->boundary()}));
       constexpr std::array kinds{CandidateKind::soup, CandidateKind::moved, CandidateKind::scaled};
       set = testing::make_candidate(kinds[i % 3], set, surface->size(), random);
       DeviationOptions options;

@@ -65,7 +65,7 @@ void check(const TaggedMesh& mesh, const oracle::WindingScheme& scheme, const Sc
 TEST(hulls, of_random_solids_sandwich_them) {
   Outcomes outcomes;
   const auto library = std::make_shared<BoundsCache>();
-  const std::uint64_t solids = testing::number_of("SNUG_PLACEMENTS", 30);
+  const std::uint64_t solids = testing::number_of("SNUG_PLACEMENTS", 20);
   for (std::uint64_t number = 0; number < solids && !HasFailure(); ++number) {
     testing::SolidCase c = testing::solid_case(number);
     std::mt19937_64 random(number);
