@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
+#include <snug/evaluate.h>
 #include <snug/mesh.h>
 #include <snug/query/pair_queries.h>
-#include <snug/query/subdivide.h>
 
 #include "runner.h"
 #include "subject.h"
@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
   const ControlMesh mesh = read_mesh(options.files[0]);
   const SchemeOptions rules;
   bench_patches("control mesh", mesh, library, options);
-  bench_patches("refined three times", subdivide(mesh, rules, 3, false), library, options);
+  bench_patches("refined three times", subdivided(mesh, 3), library, options);
   bench_queries(LimitSurface(mesh, rules, library), LimitSurface(read_mesh(options.files[1]), rules, library),
                 options);
   return 0;

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/pair_queries.h>
+#include <snug/distance.h>
+#include <snug/time_of_contact.h>
 
 #include "peers.h"
 
@@ -41,21 +42,10 @@ std::vector<Move> moves(std::size_t count, std::uint64_t seed) {
 }
 
 struct Subjects {
-  Subjects(LimitSurface in_a, LimitSurface in_b)
-      : a(std::move(in_a)),
-        b(std::move(in_b)),
-        model_a(a),
-        model_b(b),
-        scratch_a(model_a),
-        scratch_b(model_b) {}
-  LimitSurface a, b;
-  SurfaceBvh model_a, model_b;
-  SurfaceWorkspace scratch_a, scratch_b;
+  Surface a, b;
 
-  TimeOfContact first(const Move& move) {
-    const Trajectory still(move.a), moving = Trajectory::screw(move.from, move.to);
-    return time_of_contact({model_a, scratch_a, still}, {model_b, scratch_b, moving},
-                           {.tolerance = tolerance});
+  TimeOfContact first(const Move& move) const {
+    return time_of_contact(a, move.a, b, Trajectory::screw(move.from, move.to), {.tolerance = tolerance});
   }
   // B's control points go along lines to where it ends, turned and a fifth larger.
   std::vector<Point3> end_of(const Move& move) const {
@@ -64,15 +54,12 @@ struct Subjects {
     for (const Point3& p : b.mesh().points) end.push_back(way.apply(Point3{} + 1.2 * (p - Point3{})));
     return end;
   }
-  TimeOfContact first_of_bent(const Move& move) {
-    const Trajectory still(move.a), from(move.from);
+  TimeOfContact first_of_bent(const Move& move) const {
     const std::vector<Point3> end = end_of(move);
-    return time_of_contact({model_a, scratch_a, still}, {model_b, scratch_b, from, end},
-                           {.tolerance = tolerance});
+    return time_of_contact({a, {}, move.a}, {b, end, move.from}, {.tolerance = tolerance});
   }
-  double distance_at(const Motion& pose_a, const Motion& pose_b) {
-    return distance({model_a, scratch_a, pose_a}, {model_b, scratch_b, pose_b}, {.absolute = tolerance})
-        .distance.upper;
+  double distance_at(const Motion& pose_a, const Motion& pose_b) const {
+    return distance(a.at(pose_a), b.at(pose_b), {.absolute = tolerance}).distance.upper;
   }
 };
 
@@ -139,20 +126,19 @@ struct Errors {
 int main(int argc, char** argv) {
   const Options options = start(argc, argv, 7, " SEVEN-MODELS");
   const std::vector<Model> models = read_models(options.files);
-  const auto library = std::make_shared<BoundsCache>();
   for (const auto& [name_a, name_b] : model_pairs) {
     const Model &model_a = named(models, name_a), &model_b = named(models, name_b);
-    Subjects smooth(LimitSurface(model_a.mesh, loop_rules(), library),
-                    LimitSurface(model_b.mesh, loop_rules(), library));
-    Subjects flat(LimitSurface(model_a.mesh, {Scheme::flat}, library),
-                  LimitSurface(model_b.mesh, {Scheme::flat}, library));
+    const Subjects smooth{Surface(model_a.mesh, {.scheme = Scheme::loop}),
+                          Surface(model_b.mesh, {.scheme = Scheme::loop})},
+        flat{Surface(model_a.mesh, {.scheme = Scheme::flat}),
+             Surface(model_b.mesh, {.scheme = Scheme::flat})};
     const FclPair peers(triangles(model_a.mesh), triangles(model_b.mesh), FclBoxes::obbrss);
     const std::vector<Move> all = moves(options.size<std::size_t>(200, 20), 17);
     const auto count = static_cast<double>(all.size());
     const std::string names = std::string(name_a) + ", " + name_b;
     Group group("time of contact to 0.1 %, " + names, "motion", options);
     group.limit_rounds(3);
-    const auto times_of = [&](Subjects& subjects) {
+    const auto times_of = [&](const Subjects& subjects) {
       return [&] {
         double sum = 0;
         for (const Move& move : all) sum += subjects.first(move).time.lower;

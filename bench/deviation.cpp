@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/deviation.h>
-#include <snug/query/subdivide.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
 
 #include "placements.h"
 #include "runner.h"
@@ -49,15 +48,14 @@ CgalMesh peer_mesh(const ControlMesh& mesh, const Vector3& moved) {
 int main(int argc, char** argv) {
   const Options options = start(argc, argv, any_files, " MODEL...");
   for (const Model& model : read_models(options.files)) {
-    const auto library = std::make_shared<BoundsCache>();
-    const LimitSurface surface(model.mesh, loop_rules(), library);
+    const Surface surface(model.mesh, {.scheme = Scheme::loop});
     const double size = surface.size();
     // About 100,000 limit points' triangles, as they are and moved by half a percent.
     unsigned level = 0;
     while (model.mesh.face_count() << 2 * (level + 1) <= 100'000u >> (options.quick ? 4 : 0)) ++level;
-    const ControlMesh mesh = subdivide(model.mesh, surface.options(), level, true);
+    const ControlMesh mesh = subdivided(model.mesh, level, true);
     // CGAL's mesh for the surface is one level finer, and still farther off than the precision.
-    const ControlMesh finer = subdivide(model.mesh, surface.options(), level + 1, true);
+    const ControlMesh finer = subdivided(model.mesh, level + 1, true);
     for (const double moved : {0.0, 0.005}) {
       const Vector3 by{moved * size, 0, 0};
       const std::vector<Triangle> candidate = triangles_of(mesh, by);
@@ -69,8 +67,8 @@ int main(int argc, char** argv) {
         Group group(title, "triangle", options);
         group.limit_rounds(5);
         const auto ask = [&](int threads) {
-          const SurfaceBvh bvh(surface);
-          const Deviation d = deviation(bvh, candidate, {.absolute = precision * size}, {.threads = threads});
+          const Deviation d =
+              deviation(surface, candidate, {.absolute = precision * size}, {.threads = threads});
           return d.from_surface.distance.upper + d.from_candidate.distance.upper;
         };
         const double items = static_cast<double>(candidate.size());

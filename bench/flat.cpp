@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 #include "peers.h"
 
@@ -73,8 +73,8 @@ int main(int argc, char** argv) {
     std::size_t faces = 0, agree = 0, count = 0;
     double most = 0;
     for (const auto& [a, b] : model_pairs) {
-      const ControlMesh mesh_a = subdivide(named(models, a).mesh, loop_rules(), level, false),
-                        mesh_b = subdivide(named(models, b).mesh, loop_rules(), level, false);
+      const ControlMesh mesh_a = subdivided(named(models, a).mesh, level),
+                        mesh_b = subdivided(named(models, b).mesh, level);
       faces += mesh_a.face_count() + mesh_b.face_count();
       Pair& pair = *pairs.emplace_back(std::make_unique<Pair>(mesh_a, mesh_b, library));
       meeting.emplace_back();

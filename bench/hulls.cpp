@@ -1,11 +1,9 @@
 // bench_hulls: both hulls of solids within 1 % of their size, verified. Files: closed models.
 
 #include <cmath>
-#include <memory>
 #include <string>
 
-#include <snug/query/hull.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/hull.h>
 
 #include "placements.h"
 #include "runner.h"
@@ -16,13 +14,13 @@ int main(int argc, char** argv) {
   const Options options = start(argc, argv, any_files, " MODEL...");
   const double share = options.size(1e-2, 3e-2);
   for (const Model& model : read_models(options.files)) {
-    const LimitSurface surface(model.mesh, {usual_scheme(model.mesh)}, std::make_shared<BoundsCache>());
-    const SurfaceBvh bvh(surface);
+    const Surface surface(model.mesh, {.scheme = usual_scheme(model.mesh)});
+    surface.prepare();
     Group group(model.name + ", both hulls within " + std::to_string(share) + " of the size, verified",
                 "pair of hulls", options);
     for (const int threads : {1, 2}) {
       group.add("hulls, threads: " + std::to_string(threads), 1, [&, threads] {
-        const Hulls h = hull(bvh, {.error = share * surface.size()}, {.threads = threads});
+        const Hulls h = hull(surface, {.error = share * surface.size()}, {.threads = threads});
         return h.outcome == Outcome::complete
                    ? static_cast<double>(h.outer->triangles.size() + h.inner->triangles.size())
                    : NAN;

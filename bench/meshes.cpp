@@ -1,6 +1,6 @@
 #include "meshes.h"
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 #include <algorithm>
 #include <array>
@@ -256,7 +256,7 @@ ControlMesh panelled_mesh(std::size_t faces) {
       if (a < b && random() % 10 == 0) mesh.tags.creases.push_back({a, b, 6.0 + levels});
     }
   }
-  return subdivide(std::move(mesh), {Scheme::catmark}, levels, false);
+  return subdivided(std::move(mesh), levels, false, {.scheme = Scheme::catmark});
 }
 
 ControlMesh many_sharpnesses(std::size_t count) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 #include "meshes.h"
 #include "patches.h"
@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   }
   bench_quads("regular quads", quad_torus(options.size(200'000, 2'000)), options);
   bench_quads("irregular quads",
-              subdivide(irregular_mesh(options.size(30'000, 1'000)), {Scheme::catmark}, 1, false), options);
+              subdivided(irregular_mesh(options.size(30'000, 1'000)), 1, false, {.scheme = Scheme::catmark}),
+              options);
   return 0;
 }

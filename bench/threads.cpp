@@ -14,9 +14,8 @@
 #include <experiments/convergence.h>
 #include <experiments/quantile.h>
 #include <experiments/tightness.h>
-#include <snug/query/bound.h>
-#include <snug/query/closest.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/distance.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/batch_bounds.h>
 #include <support/parallel.h>
 #ifdef SNUG_BENCH_PICTURE
@@ -73,7 +72,8 @@ LimitSurface surface_of(const ControlMesh& mesh) {
   return {mesh, {Scheme::loop, BoundaryRule::edge_and_corner}, std::make_shared<BoundsCache>()};
 }
 
-void compare_surfaces(const Options& options, const ControlMesh& mesh, const LimitSurface& surface) {
+void compare_surfaces(const Options& options, const ControlMesh& mesh, const Surface& handle) {
+  const LimitSurface& surface = handle.data()->limit();
   compare(options, "surface, kinds and rows not known", [&](int threads) {
     return static_cast<double>(BatchBounds(surface_of(mesh), {}, threads).patches().size());
   });
@@ -95,15 +95,15 @@ void compare_surfaces(const Options& options, const ControlMesh& mesh, const Lim
       double sum = 0;
       BoundOptions how;
       how.level = level;
-      bound(surface, how, [&](const PieceEnclosure& piece) { sum += piece.offset.radius; },
+      bound(handle, how, [&](const PatchEnclosure& piece) { sum += piece.offset.radius; },
             {.threads = threads});
       return sum;
     });
   }
 }
 
-void compare_closest(const Options& options, const LimitSurface& surface) {
-  const SurfaceBvh model(surface);
+void compare_closest(const Options& options, const Surface& surface) {
+  surface.prepare();
   std::mt19937_64 random(1);
   const auto draw = [&](double reach) { return reach * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
   for (const double reach : {5.0, 100.0}) {
@@ -116,7 +116,7 @@ void compare_closest(const Options& options, const LimitSurface& surface) {
       compare(options, name, [&, precision](int threads) {
         double sum = 0;
         for (const ClosestPoint& at :
-             closest_point(model, points, {.absolute = precision}, {.threads = threads})) {
+             closest_point(surface, points, {.absolute = precision}, {.threads = threads})) {
           sum += at.distance.upper;
         }
         return sum;
@@ -176,7 +176,7 @@ int main(int argc, char** argv) {
       "thread's; %d cores\n",
       options.rounds, hardware_threads());
   const ControlMesh mesh = irregular_mesh(options.size(100'000, 2'000));
-  const LimitSurface surface = surface_of(mesh);
+  const Surface surface(mesh, {.scheme = Scheme::loop});
   compare_surfaces(options, mesh, surface);
   compare_closest(options, surface);
 #ifdef SNUG_BENCH_PICTURE

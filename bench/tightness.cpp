@@ -10,8 +10,8 @@
 
 #include <experiments/quantile.h>
 #include <experiments/tightness.h>
+#include <snug/evaluate.h>
 #include <snug/mesh.h>
-#include <snug/query/subdivide.h>
 
 #include "meshes.h"
 #include "runner.h"
@@ -59,7 +59,7 @@ void model(const std::string& path, const Options& options, int side) {
   std::printf("%s\n", path.c_str());
   const ControlMesh mesh = read_mesh(path);
   for (unsigned level = 0; level <= 2; ++level) {
-    Subject subject(subdivide(mesh, {}, level, false));
+    Subject subject(subdivided(mesh, level, false, {.scheme = Scheme::loop}));
     // At most about 300 patches, spread over the whole mesh.
     const std::size_t most = options.size<std::size_t>(300, 5);
     const std::size_t stride = (subject.surface().face_count() + most - 1) / most;

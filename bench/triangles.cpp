@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/deviation.h>
-#include <snug/query/subdivide.h>
-#include <snug/query/tessellate.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
+#include <snug/tessellate.h>
 
 #include "placements.h"
 #include "runner.h"
@@ -22,8 +21,8 @@ using namespace snug;
 using namespace snug::bench;
 
 // Triangles of limit points after so many steps of subdivision.
-std::vector<Triangle> uniform(const LimitSurface& surface, unsigned level) {
-  const ControlMesh mesh = subdivide(surface.mesh(), surface.options(), level, true);
+std::vector<Triangle> uniform(const Surface& surface, unsigned level) {
+  const ControlMesh mesh = subdivided(surface.mesh(), level, true, {.scheme = surface.scheme()});
   std::vector<Triangle> triangles;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.face(FaceId(f));
@@ -36,11 +35,12 @@ std::vector<Triangle> uniform(const LimitSurface& surface, unsigned level) {
 }
 
 // The first level whose triangles are proved to be within the tolerance, and how many these are.
-std::size_t uniform_count(const SurfaceBvh& model, double tolerance, unsigned& level) {
+std::size_t uniform_count(const Surface& surface, double tolerance, unsigned& level) {
   for (level = 0; level < 9; ++level) {
-    const std::vector<Triangle> triangles = uniform(model.surface(), level);
+    const std::vector<Triangle> triangles = uniform(surface, level);
     if (triangles.size() > 4'000'000) break;
-    const Deviation found = deviation(model, triangles, {.absolute = tolerance / 64, .threshold = tolerance});
+    const Deviation found =
+        deviation(surface, triangles, {.absolute = tolerance / 64, .threshold = tolerance});
     if (std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper) <= tolerance) {
       return triangles.size();
     }
@@ -55,18 +55,17 @@ int main(int argc, char** argv) {
   const double share = options.size(1e-3, 1e-2);
   std::vector<double> ratios;
   for (const Model& model : read_models(options.files)) {
-    std::optional<LimitSurface> made;
+    std::optional<Surface> made;
     try {
-      made.emplace(model.mesh, SchemeOptions{usual_scheme(model.mesh)}, std::make_shared<BoundsCache>());
+      made.emplace(model.mesh, SurfaceOptions{.scheme = usual_scheme(model.mesh)});
     } catch (const InputError&) {
       continue;  // without a surface by these rules
     }
-    const LimitSurface& surface = *made;
-    const SurfaceBvh bvh(surface);
+    const Surface& surface = *made;
     const double tolerance = share * surface.size();
     const Tessellation adaptive = tessellate(surface, {.error = tolerance, .normals = false});
     unsigned level = 0;
-    const std::size_t count = uniform_count(bvh, tolerance, level);
+    const std::size_t count = uniform_count(surface, tolerance, level);
     std::printf("# %s: %zu triangles within %g of the size, uniform %zu (level %u)", model.name.c_str(),
                 adaptive.triangles.size(), share, count, level);
     if (count > 0) {

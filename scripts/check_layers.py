@@ -41,6 +41,12 @@ INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapt
                "apps/snug/picture": {SHARED}}
 # Folders whose files use the library like any other program: they include public headers and src/support alone.
 USERS = ("apps/snug", "python", "web", "examples")
+# Tests of questions, and what they share, ask as users do: no private headers of `query` but in the files that look inside.
+QUESTIONS = ("tests/query", "tests/sound", "tests/testing")
+WHITE_BOX = {"tests/query/hull_problems_test.cpp", "tests/query/moving_body_test.cpp", "tests/query/pair_queries_test.cpp",
+             "tests/query/piece_quadratic_test.cpp", "tests/query/swept_motion_test.cpp", "tests/query/trajectory_test.cpp",
+             "tests/query/triangle_complex_test.cpp", "tests/sound/lazy_trees_test.cpp", "tests/sound/schemes_collide_test.cpp",
+             "tests/sound/self_near_test.cpp"}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
 ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
@@ -148,6 +154,12 @@ def check_tree(root):
             faults += [f"{path.relative_to(root)}:{line}: {name} includes public headers alone, not <{include}>"
                        for line, _, include in includes(path)
                        if layer_of(include) and layer_of(include) not in (SHARED, ADAPTERS)]
+    for name in QUESTIONS:
+        for path in cpp_files(root / name):
+            where = path.relative_to(root)
+            faults += [f"{where}:{line}: tests of questions ask through public headers, not <{include}>"
+                       for line, _, include in includes(path)
+                       if layer_of(include) == "query" and str(where) not in WHITE_BOX]
     return faults
 
 
@@ -160,6 +172,9 @@ GOOD_TREE = {
     "src/snug/mesh/m.h": "#pragma once\n#include <support/a.h>\n",
     "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\n",
     "src/snug/query/q.cpp": "#include <snug/mesh/m.h>\n",
+    "src/snug/query/q.h": "#pragma once\n",
+    "tests/query/trajectory_test.cpp": "#include <snug/query/q.h>\n",
+    "tests/sound/q_test.cpp": "#include <snug/p.h>\n#include <snug/mesh/m.h>\n",
     "src/snug/independence/CMakeLists.txt": "add_library(snug_independence STATIC k.cpp)",
     "src/snug/independence/k.h": "#pragma once\n",
     "src/snug/independence/k.cpp": "#include <snug/independence/k.h>\n#include <snug/mesh/m.h>\n",
@@ -206,6 +221,9 @@ BAD_FILES = [
     ("examples/e.cpp", "#include <snug/adapters/gone.h>\n", "<snug/adapters/gone.h> does not exist"),
     ("apps/snug/b.cpp", "#include <snug/mesh/m.h>\n", "b.cpp:1: apps/snug includes public headers alone"),
     ("python/src/b.cpp", "#include <snug/mesh/m.h>\n", "b.cpp:1: python includes public headers alone"),
+    ("tests/sound/q_test.cpp", "#include <snug/query/q.h>\n", "q_test.cpp:1: tests of questions ask through public"),
+    ("tests/query/q_test.cpp", "#include <snug/query/q.h>\n", "q_test.cpp:1: tests of questions ask through public"),
+    ("tests/testing/q.h", "#pragma once\n#include <snug/query/q.h>\n", "q.h:2: tests of questions ask through public"),
     ("src/snug/mesh/m.cpp", "#include <snug/adapters/d.h>\n", "mesh may not include adapters"),
 ]
 

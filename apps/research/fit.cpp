@@ -8,9 +8,9 @@
 #include <apps/snug/progress_bar.h>
 #include <apps/snug/words.h>
 #include <fmt/core.h>
+#include <snug/distance.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/mesh.h>
-#include <snug/query/closest.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
@@ -93,9 +93,11 @@ void assign(const LimitSurface& surface, Samples& samples, const Options& option
   samples.reached = true;
   Precision wanted;
   wanted.absolute = 1e-6 * surface.size();
-  const SurfaceBvh model(surface, {}, monitor);
+  const Run run = run_of(options, monitor);
+  const Surface model(surface.mesh(),
+                      {.scheme = surface.options().scheme, .boundary = surface.options().boundary}, run);
   samples.at.clear();
-  for (const ClosestPoint& found : closest_point(model, samples.points, wanted, run_of(options, monitor))) {
+  for (const ClosestPoint& found : closest_point(model, samples.points, wanted, run)) {
     samples.at.push_back(*found.at);
     samples.reached &= found.outcome == Outcome::complete;
   }

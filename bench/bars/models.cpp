@@ -3,7 +3,7 @@
 #include <memory>
 #include <random>
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 #include "bars.h"
 #include "peers.h"
@@ -16,7 +16,7 @@ void add_memory(const ModelPair& pair, const Options& options, BarTable& table) 
   const auto refined = [](const Model& model) {
     unsigned level = 0;
     while (model.mesh.face_count() << (2 * level) < 2'000) ++level;
-    return Model{model.name, subdivide(model.mesh, loop_rules(), level, false)};
+    return Model{model.name, subdivided(model.mesh, level)};
   };
   const Model a = refined(pair.a), b = refined(pair.b);
   SnugPair models(a, b, std::make_shared<BoundsCache>());

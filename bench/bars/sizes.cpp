@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 #include "bars.h"
 #include "peers.h"
@@ -24,7 +24,7 @@ std::optional<Sizes> sizes_of(const ModelPair& pair, std::size_t faces) {
   const Model &small = a_larger ? pair.a : pair.b, &partner = a_larger ? pair.b : pair.a;
   for (unsigned level = 1; small.mesh.face_count() << (2 * level) <= faces * 11 / 10; ++level) {
     if (small.mesh.face_count() << (2 * level) < faces * 9 / 10) continue;
-    ControlMesh mesh = subdivide(small.mesh, loop_rules(), level, false);
+    ControlMesh mesh = subdivided(small.mesh, level);
     const std::string name = small.name + " of " + std::to_string(mesh.face_count()) + " faces";
     return Sizes{name + " and " + partner.name, &partner, &small, {name, std::move(mesh)}};
   }

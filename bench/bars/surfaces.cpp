@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 #include "bars.h"
 #include "evaluation.h"
@@ -42,8 +42,8 @@ void patch_bars(const Options& options, BarTable& table) {
     table.at_least("regular Loop rows", "M/s", 10, "torus", millions_a_second(of_name(times, from_rows)));
   }
   const ControlMesh quads = quad_torus(options.size(100'000, 2'000)),
-                    irregular =
-                        subdivide(irregular_mesh(options.size(10'000, 1'000)), {Scheme::catmark}, 1, false);
+                    irregular = subdivided(irregular_mesh(options.size(10'000, 1'000)), 1, false,
+                                           {.scheme = Scheme::catmark});
   for (const ControlMesh* mesh : {&quads, &irregular}) {
     const std::string title = mesh == &quads ? "regular quads" : "irregular quads";
     std::size_t corners = 0;

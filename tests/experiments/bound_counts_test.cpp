@@ -4,11 +4,12 @@
 #include <experiments/corner_nets.h>
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/query/bound.h>
+#include <snug/curves.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
 #include <testing/curves.h>
 #include <testing/patches.h>
+#include <testing/surfaces.h>
 
 #include <cmath>
 #include <vector>
@@ -16,7 +17,8 @@
 namespace snug::bound_counts_test {
 namespace {
 
-LimitSurface ball() { return testing::surface_of(oracle::meshes::quartered(oracle::meshes::icosahedron())); }
+oracle::TwinMesh ball_mesh() { return oracle::meshes::quartered(oracle::meshes::icosahedron()); }
+LimitSurface ball() { return testing::surface_of(ball_mesh()); }
 
 TEST(bound_counts, are_those_of_bound_for_rows_and_tables) {
   const LimitSurface surface = ball();
@@ -25,8 +27,8 @@ TEST(bound_counts, are_those_of_bound_for_rows_and_tables) {
        {std::pair{BoundWay::rows, BoundMethod::rows}, {BoundWay::ngon, BoundMethod::table}}) {
     for (const std::optional<double> tolerance : {std::optional<double>{}, {0.05}, {0.004}}) {
       BoundOptions options{.error = tolerance, .level = 2};
-      const BoundSummary expected = bound(
-          surface, options, [](const PieceEnclosure&) {}, {}, method);
+      const BoundSummary expected = bound(testing::public_surface(ball_mesh(), {.bounds = method}), options,
+                                          [](const PatchEnclosure&) {});
       const PieceCount found = count_pieces(surface, tables, way, {.tolerance = tolerance, .level = 2});
       EXPECT_EQ(found.count, expected.count);
       EXPECT_EQ(found.splits, expected.splits);

@@ -1,17 +1,16 @@
 #include <experiments/printed_hierarchy.h>
 
 #include <gtest/gtest.h>
-#include <snug/query/bound.h>
+#include <snug/bound.h>
 #include <testing/patches.h>
+#include <testing/surfaces.h>
 
 namespace snug::printed_hierarchy_test {
 namespace {
 
-std::uint64_t bound_count(const LimitSurface& surface, BoundMethod method, double tolerance) {
-  BoundOptions options;
-  options.error = tolerance;
-  return bound(
-             surface, options, [](const PieceEnclosure&) {}, {}, method)
+std::uint64_t bound_count(BoundMethod method, double tolerance) {
+  return bound(testing::public_surface(oracle::meshes::icosahedron(), {.bounds = method}),
+               {.error = tolerance}, [](const PatchEnclosure&) {})
       .count;
 }
 
@@ -19,10 +18,10 @@ TEST(leaves, are_as_many_as_bound_makes) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   for (const double tolerance : {0.2, 0.02}) {
     const auto rows = leaves(surface, {tolerance, {}});
-    EXPECT_EQ(rows.size(), bound_count(surface, BoundMethod::rows, tolerance));
+    EXPECT_EQ(rows.size(), bound_count(BoundMethod::rows, tolerance));
     for (const OffsetTriangle& leaf : rows) EXPECT_LE(leaf.radius, tolerance / 2);
     const auto tables = leaves(surface, {tolerance, BoundMethod::table});
-    EXPECT_EQ(tables.size(), bound_count(surface, BoundMethod::table, tolerance));
+    EXPECT_EQ(tables.size(), bound_count(BoundMethod::table, tolerance));
     EXPECT_GE(tables.size(), rows.size());
   }
 }

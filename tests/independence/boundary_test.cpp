@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 
 // Faces at a boundary vertex.
 namespace snug::boundary_test {
@@ -113,14 +113,14 @@ TEST(boundary_step, makes_the_points_of_subdivided_meshes) {
       mesh.points.push_back({anywhere(random), anywhere(random), anywhere(random)});
     for (const auto& face : fan.faces) mesh.add_face(std::vector<VertexId>(face.begin(), face.end()));
     if (corner) mesh.tags.corners.push_back({VertexId(0), infinite_sharpness});
-    const SchemeOptions options{.scheme = scheme.scheme, .boundary = BoundaryRule::edge_only};
+    const SurfaceOptions options{.scheme = scheme.scheme, .boundary = BoundaryRule::edge_only};
 
     const PieceStep step = boundary_step(scheme, n, {i, corner});
     std::vector<Point3> points;
     for (const std::uint32_t p : embedded(boundary_net(scheme, n, {i, corner}), {0, 1}, fan, {0, 1}))
       points.push_back(mesh.points[p]);
     for (const unsigned level : {1U, 2U}) {
-      const ControlMesh fine = subdivide(mesh, options, level, false);
+      const ControlMesh fine = subdivided(mesh, level, false, options);
       std::vector<Point3> next;
       for (const WeightRow& row : step.rows) {
         const Point3 p = combination(row, points);

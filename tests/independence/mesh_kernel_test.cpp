@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <numeric>
 
+#include <snug/evaluate.h>
 #include <snug/patch/limit_evaluator.h>
-#include <snug/query/subdivide.h>
 #include <snug/run.h>
 #include <snug/scheme/rules.h>
 #include <snug/surface/limit_surface.h>
@@ -63,7 +63,8 @@ void expect_no_limit(ControlMesh mesh, const KernelVector& vector, const SchemeO
   for (std::size_t i = 0; i < vector.vertices.size(); ++i) {
     mesh.points[vector.vertices[i].index()].x = vector.signs[i];
   }
-  const ControlMesh limit = subdivide(std::move(mesh), options, 1, true);
+  const ControlMesh limit =
+      subdivided(std::move(mesh), 1, true, {.scheme = options.scheme, .boundary = options.boundary});
   for (const VertexId v : limit.face_vertices) EXPECT_NEAR(limit.points[v.index()].x, 0, 1e-14);
 }
 

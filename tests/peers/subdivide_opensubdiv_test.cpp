@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <oracle/obj_reader.h>
 #include <peers/opensubdiv_comparison.h>
-#include <snug/query/subdivide.h>
+#include <snug/evaluate.h>
 #include <testing/tagged.h>
 
 #include <algorithm>
@@ -49,10 +49,11 @@ Differences compare(const oracle::TaggedMesh& mesh, const oracle::Rules& rules, 
     return result;
   }
   const ControlMesh control = testing::control_mesh(mesh, rules);
-  SchemeOptions options = testing::options_of(rules);
-  if (bilinear) options.scheme = Scheme::bilinear;
-  const ControlMesh refined = subdivide(control, options, level, false);
-  const ControlMesh limit = subdivide(control, options, level, true);
+  const SchemeOptions made = testing::options_of(rules);
+  const SurfaceOptions options{.scheme = bilinear ? Scheme::bilinear : made.scheme,
+                               .boundary = made.boundary};
+  const ControlMesh refined = subdivided(control, level, false, options);
+  const ControlMesh limit = subdivided(control, level, true, options);
   const double size = largest_coordinate(mesh);
   result.same_faces = refined.face_count() == theirs.faces.size();
   std::size_t kept = 0;  // faces of `limit`: holes are left out

@@ -1,8 +1,6 @@
 #include <experiments/control_box.h>
 #include <experiments/quantile.h>
-#include <snug/query/bound.h>
-#include <snug/query/subdivide.h>
-#include <snug/surface/evaluate.h>
+#include <snug/curves.h>
 #include <support/error.h>
 #include <testing/counts.h>
 #include <testing/curves.h>

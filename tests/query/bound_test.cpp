@@ -1,31 +1,33 @@
-#include <snug/query/bound.h>
+#include <snug/bound.h>
 
 #include <gtest/gtest.h>
 #include <support/error.h>
-#include <testing/patches.h>
+#include <testing/surfaces.h>
 
+#include <atomic>
 #include <vector>
 
 namespace snug::bound_test {
 namespace {
 
 struct Collected {
-  std::vector<PieceEnclosure> pieces;
+  std::vector<PatchEnclosure> pieces;
   BoundSummary summary;
 };
 
-Collected collect(const LimitSurface& surface, const BoundOptions& options, const Run& run = {}) {
+Collected collect(const Surface& surface, const BoundOptions& options, const Run& run = {}) {
   Collected result;
   result.summary = bound(
-      surface, options, [&](const PieceEnclosure& piece) { result.pieces.push_back(piece); }, run);
+      surface, options, [&](const PatchEnclosure& piece) { result.pieces.push_back(piece); }, run);
   return result;
 }
 
 bool same(const Collected& a, const Collected& b) {
   if (a.pieces.size() != b.pieces.size() || a.summary.splits != b.summary.splits) return false;
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
-    const PieceEnclosure &x = a.pieces[i], &y = b.pieces[i];
-    if (x.patch != y.patch || !(x.path == y.path) || x.offset.base != y.offset.base ||
+    const PatchEnclosure &x = a.pieces[i], &y = b.pieces[i];
+    if (x.patch.owner != y.patch.owner || x.patch.part != y.patch.part || x.piece != y.piece ||
+        x.level != y.level || x.corners != y.corners || x.offset.base != y.offset.base ||
         x.offset.radius != y.offset.radius || x.interval.corner != y.interval.corner ||
         x.normals.has_value() != y.normals.has_value()) {
       return false;
@@ -38,7 +40,7 @@ bool same(const Collected& a, const Collected& b) {
 
 TEST(bound, is_the_same_for_any_number_of_threads) {
   std::mt19937_64 random(24);
-  const LimitSurface surface = testing::surface_of(
+  const Surface surface = testing::public_surface(
       oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 20, 0.1, random));
   BoundOptions options;
   options.error = 0.005;
@@ -55,25 +57,24 @@ TEST(bound, is_the_same_for_any_number_of_threads) {
 }
 
 TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
-  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const Surface surface = testing::public_surface(oracle::meshes::icosahedron());
   BoundOptions options;
   options.error = 0.01;
   const Collected result = collect(surface, options);
   EXPECT_EQ(result.summary.outcome, Outcome::complete);
   EXPECT_LE(result.summary.max_radius, 0.005);
-  std::vector<double> area(surface.face_count(), 0);
-  for (const PieceEnclosure& piece : result.pieces)
-    area[piece.patch.index()] += std::ldexp(1.0, -2 * static_cast<int>(piece.path.level()));
+  std::vector<double> area(surface.owner_count(), 0);
+  for (const PatchEnclosure& piece : result.pieces)
+    area[piece.patch.owner] += std::ldexp(1.0, -2 * static_cast<int>(piece.level));
   for (const double a : area) EXPECT_EQ(a, 1);
 }
 
 TEST(bound, says_whether_rounding_or_the_budget_stops_it) {
   BoundOptions options;
   options.error = 1e-17;
-  const LimitSurface curved = testing::surface_of(oracle::meshes::octahedron());
+  const Surface curved = testing::public_surface(oracle::meshes::octahedron());
   EXPECT_EQ(collect(curved, options, {.max_splits = 20000}).summary.outcome, Outcome::budget_spent);
-  const LimitSurface flat(testing::control_mesh(oracle::meshes::octahedron()), {Scheme::flat},
-                          std::make_shared<BoundsCache>());
+  const Surface flat(testing::control_mesh(oracle::meshes::octahedron()), {.scheme = Scheme::flat});
   EXPECT_EQ(collect(flat, options, {.max_splits = 20000}).summary.outcome, Outcome::at_rounding);
 }
 
@@ -82,18 +83,18 @@ TEST(bound, refuses_results_that_do_not_fit_a_double) {
   for (oracle::Point& p : twin.points) {
     for (double& x : p) x *= 1.79e308;
   }
-  const LimitSurface surface = testing::surface_of(twin);
+  const Surface surface = testing::public_surface(twin);
   BoundOptions options;
   options.level = 0;
   EXPECT_NO_THROW(static_cast<void>(collect(surface, options)));  // inside the control points' hull: it fits
 }
 
 TEST(bound, stops_when_asked) {
-  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const Surface surface = testing::public_surface(oracle::meshes::icosahedron());
   const std::atomic<bool> stop{true};
   WorkMonitor monitor;
   monitor.stop = &stop;
-  EXPECT_THROW(bound(surface, {}, [](const PieceEnclosure&) {}, {.monitor = &monitor}), Interrupted);
+  EXPECT_THROW(bound(surface, {}, [](const PatchEnclosure&) {}, {.monitor = &monitor}), Interrupted);
 }
 
 }  // namespace

@@ -11,10 +11,10 @@
 #include <experiments/corner_nets.h>
 #include <experiments/rooms.h>
 #include <experiments/tightness.h>
+#include <snug/curves.h>
+#include <snug/distance.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/bound.h>
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
+#include <snug/search/pair_frames.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/evaluate.h>
 
@@ -64,9 +64,9 @@ TEST(callers_mistakes, a_surface_needs_a_library) {
 }
 
 TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_is) {
-  const LimitSurface surface = surface_of(square(), Scheme::catmark);
+  const Surface surface(square());
   const auto run = [&](const BoundOptions& options) {
-    bound(surface, options, [](const PieceEnclosure&) {});
+    bound(surface, options, [](const PatchEnclosure&) {});
   };
   for (const double tolerance : std::vector<double>{NAN, INFINITY, -INFINITY, 0, -1e-300}) {
     expect_refused("error", [&] { run({.error = tolerance}); });
@@ -134,27 +134,26 @@ TEST(callers_mistakes, patch_bounds_take_a_point_a_vertex_and_patches_that_there
   expect_refused("no patch", [&] { BatchBounds(surface, std::vector{PatchId()}, {}, 1); });
 }
 
-TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model) {
+TEST(callers_mistakes, queries_take_finite_numbers) {
+  const Surface surface(square());
+  for (const double x : no_numbers) {
+    expect_refused("point", [&] { static_cast<void>(closest_point(surface, {x, 0, 0})); });
+    expect_refused("points", [&] {
+      static_cast<void>(closest_point(surface, std::vector<Point3>{{0, 0, x}}, {}, {.threads = 2}));
+    });
+    expect_refused("precision",
+                   [&] { static_cast<void>(closest_point(surface, Point3{}, {.absolute = x})); });
+    expect_refused("tolerance", [&] { static_cast<void>(collide(surface, surface, {.tolerance = x})); });
+    expect_refused("relative", [&] { static_cast<void>(distance(surface, surface, {.relative = x})); });
+  }
+}
+
+TEST(callers_mistakes, pairs_of_trees_take_a_workspace_for_each) {
   const LimitSurface surface = surface_of(square(), Scheme::catmark);
   const SurfaceBvh a(surface, {.threads = 1}), b(surface, {.threads = 1});
   SurfaceWorkspace at_a(a), at_b(b);
-  for (const double x : no_numbers) {
-    expect_refused("point", [&] { static_cast<void>(closest_point(at_a, {x, 0, 0}, {})); });
-    expect_refused("points", [&] {
-      static_cast<void>(closest_point(a, std::vector<Point3>{{0, 0, x}}, {}, {.threads = 2}));
-    });
-    expect_refused("precision", [&] { static_cast<void>(closest_point(at_a, {}, {.absolute = x})); });
-    expect_refused("tolerance", [&] {
-      static_cast<void>(collide({a, at_a, {}}, {b, at_b, {}}, {.tolerance = x}));
-    });
-    expect_refused("relative", [&] {
-      static_cast<void>(distance({a, at_a, {}}, {b, at_b, {}}, {.relative = x}));
-    });
-  }
-  expect_refused("one scratch for two", [&] {
-    static_cast<void>(collide({a, at_a, {}}, {a, at_a, {}}, {.tolerance = 1}));
-  });
-  expect_refused("another's scratch", [&] { static_cast<void>(distance({a, at_b, {}}, {b, at_a, {}}, {})); });
+  expect_refused("one for two", [&] { PairFrames({a, at_a, {}}, {a, at_a, {}}); });
+  expect_refused("another's", [&] { PairFrames({a, at_b, {}}, {b, at_a, {}}); });
 }
 
 TEST(callers_mistakes, experiments_need_something_to_measure) {

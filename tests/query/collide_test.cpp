@@ -1,14 +1,12 @@
-#include <snug/query/pair_queries.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
 
 #include <gtest/gtest.h>
-#include <snug/patch/evaluate.h>
-#include <snug/query/closest.h>
-#include <snug/query/nesting.h>
 #include <snug/search/piece_pairs.h>
-#include <snug/search/solid.h>
+#include <snug/search/surface_data.h>
 #include <support/error.h>
-#include <testing/patches.h>
 #include <testing/placements.h>
+#include <testing/surfaces.h>
 
 #include <testing/tagged.h>
 #include <cstdio>
@@ -21,18 +19,12 @@ namespace snug::collide_test {
 namespace {
 
 struct Pair {
-  LimitSurface a, b;
-  SurfaceBvh model_a, model_b;
-  SurfaceWorkspace scratch_a, scratch_b;
+  Surface a, b;
   Pair(const oracle::TwinMesh& x, const oracle::TwinMesh& y, int threads = 1)
-      : a(testing::surface_of(x)),
-        b(testing::surface_of(y)),
-        model_a(a, {.threads = threads}),
-        model_b(b, {.threads = threads}),
-        scratch_a(model_a),
-        scratch_b(model_b) {}
+      : a(testing::public_surface(x, {}, {.threads = threads})),
+        b(testing::public_surface(y, {}, {.threads = threads})) {}
   Collision ask(const Motion& place, const CollideOptions& options, const Run& run = {}) {
-    return collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options, run);
+    return collide(a, b.at(place), options, run);
   }
 };
 
@@ -127,16 +119,14 @@ TEST(collide, is_undecided_when_the_budget_ends) {
 }
 
 TEST(closest, ends_at_rounding_where_the_point_lies_on_the_surface) {
-  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  const SurfaceBvh model(surface);
-  SurfaceWorkspace scratch(model);
-  const Patch patch = surface.patch(PatchId(3));
-  const Point3 on = surface.scale().inverse().apply(patch.origin + limit_point(patch, {0, 0}).relative);
+  const Surface surface = testing::public_surface(oracle::meshes::icosahedron());
+  const Point3 on = evaluate(surface, {3, 0, 0, 0}).point;
   // No distance is small beside none: precision relative to it alone is never reached, and pieces around a
   // vertex could be split for long.
-  const ClosestPoint found = closest_point(scratch, on, {0, 1e-3});
+  Workspace workspace;
+  const ClosestPoint found = closest_point(surface, on, {0, 1e-3}, {.workspace = &workspace});
   EXPECT_LE(found.distance.upper, 1e-13);
-  EXPECT_LT(scratch.bytes(), 62 * (sizeof(SplitNode) + sizeof(Patch)));
+  EXPECT_LT(workspace.bytes(), 62 * (sizeof(SplitNode) + sizeof(Patch)));
 }
 
 TEST(collide, works_at_the_ends_of_the_doubles) {
@@ -176,8 +166,7 @@ TEST(collide, surfaces_far_apart_are_separated_at_once_wherever_they_are) {
           EXPECT_GE(answer.distance.lower, far * (1 - 2e-14) - 2 * (size_a + size_b)) << where;
           const bool very_far = far > 1e18 * std::max(size_a, size_b);
           const Distance apart =
-              distance({pair.model_a, pair.scratch_a, {}},
-                       {pair.model_b, pair.scratch_b, moved(sign * far, 0, 0)}, {0, very_far ? 1e-13 : 1e-6});
+              distance(pair.a, pair.b.at(moved(sign * far, 0, 0)), {0, very_far ? 1e-13 : 1e-6});
           EXPECT_LE(apart.stats.splits, 4000u) << where;
           EXPECT_LE(apart.distance.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
           EXPECT_GE(apart.distance.upper, far - tip * (size_a + size_b) * (1 + 1e-15)) << where;
@@ -239,8 +228,7 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
     for (int exponent = 100; exponent < 150; ++exponent) {
       const Motion place = moved(std::ldexp(1.0, exponent), 0, 0);
       CollideOptions options = testing::verdict_only(0, 0.9 * apart);
-      const Collision answer = collide({pair.model_a, pair.scratch_a, place},
-                                       {pair.model_b, pair.scratch_b, place}, options, {.max_splits = 200});
+      const Collision answer = collide(pair.a.at(place), pair.b.at(place), options, {.max_splits = 200});
       separated += answer.verdict == Verdict::separated;
       EXPECT_LE(answer.distance.lower, apart) << exponent;
     }
@@ -251,7 +239,9 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
 // Any direction gives a bound, whatever its length: squares of short ones lose digits.
 TEST(collide, planes_between_quadratics_hold_for_directions_of_any_length) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
-  const PlacedBvh a{pair.model_a, pair.scratch_a, {}}, b{pair.model_b, pair.scratch_b, moved(3, 0.2, 0.1)};
+  const SurfaceBvh &model_a = pair.a.data()->bvh(), &model_b = pair.b.data()->bvh();
+  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  const PlacedBvh a{model_a, scratch_a, {}}, b{model_b, scratch_b, moved(3, 0.2, 0.1)};
   PairFrames frames(a, b);
   SearchStats stats;
   PairWalk walk(frames, stats, WideNode::Gaps::lines);
@@ -297,11 +287,11 @@ TEST(collide, surfaces_in_one_plane_end_within_bounded_memory) {
   const Motion tilted = testing::random_placement(random, {});
   // Once more, about the plane's own normal.
   const Motion turned = tilted * Motion::rotation({0, 0, 1}, 0.3);
-  const Collision answer = collide({pair.model_a, pair.scratch_a, tilted},
-                                   {pair.model_b, pair.scratch_b, turned}, testing::verdict_only());
+  Workspace workspace;
+  const Collision answer =
+      collide(pair.a.at(tilted), pair.b.at(turned), testing::verdict_only(), {.workspace = &workspace});
   EXPECT_EQ(answer.verdict, Verdict::undecided);
-  EXPECT_LT(pair.scratch_a.bytes() + pair.scratch_b.bytes(),
-            std::size_t{256} << 20);  // what max_touched allows
+  EXPECT_LT(workspace.bytes(), std::size_t{256} << 20);  // what max_touched allows
 }
 
 TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
@@ -355,16 +345,12 @@ TEST(collide, solids_that_share_planes_intersect) {
         shape.creases.push_back({polygon[k], polygon[(k + 1) % polygon.size()], oracle::kInfinitelySharp});
       }
     }
-    const LimitSurface box(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model_a(box), model_b(box);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Surface box(testing::control_mesh(shape), {.scheme = scheme});
     CollideOptions options = testing::verdict_only();
     options.tolerance = 1e-3;
     options.prove_contact = true;
     options.solid = true;
-    const auto ask = [&](const Vector3& d) {
-      return collide({model_a, scratch_a, {}}, {model_b, scratch_b, Motion::translation(d)}, options);
-    };
+    const auto ask = [&](const Vector3& d) { return collide(box, box.at(Motion::translation(d)), options); };
     for (const Vector3& d : {Vector3{0.875, 0, 0}, Vector3{0.5, 0.5, 0}, Vector3{0, 0.125, 0}}) {
       EXPECT_EQ(ask(d).verdict, Verdict::intersecting) << name_of(scheme) << ' ' << d.x << ' ' << d.y;
     }
@@ -391,10 +377,7 @@ TEST(collide, equal_solids_in_one_place_intersect_and_only_touching_ones_never_d
       const Motion place = trial == 0 ? Motion() : testing::random_placement(random, {});
       for (const double turn : {0.0, 90.0, 180.0}) {
         const Motion turned = place * Motion::rotation_degrees({0, 0, 1}, turn);
-        EXPECT_EQ(
-            collide({pair.model_a, pair.scratch_a, place}, {pair.model_b, pair.scratch_b, turned}, options)
-                .verdict,
-            Verdict::intersecting)
+        EXPECT_EQ(collide(pair.a.at(place), pair.b.at(turned), options).verdict, Verdict::intersecting)
             << trial << ' ' << turn;
       }
     }
@@ -402,23 +385,17 @@ TEST(collide, equal_solids_in_one_place_intersect_and_only_touching_ones_never_d
   // Octahedra with faces in one plane: points inside of each lie in the box around the other one.
   ControlMesh facets = testing::control_mesh(body);
   facets.tags.scheme = Scheme::flat;
-  const LimitSurface eight(facets, {Scheme::flat}, std::make_shared<BoundsCache>());
-  const SurfaceBvh left(eight), right(eight);
-  SurfaceWorkspace scratch_left(left), scratch_right(right);
+  const Surface eight(facets);
   for (int trial = 0; trial < 50; ++trial) {
     const double x = static_cast<double>(random() % 9) / 8,
                  y = (1 - x) + x * static_cast<double>(random() % 9) / 8;
     const Motion beside = Motion::translation({x, y, 2 - x - y});
-    EXPECT_NE(collide({left, scratch_left, {}}, {right, scratch_right, beside}, options).verdict,
-              Verdict::intersecting)
-        << trial;
+    EXPECT_NE(collide(eight, eight.at(beside), options).verdict, Verdict::intersecting) << trial;
   }
   // A box and its mirror image in one of its sides, and slid along it.
   ControlMesh box = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube()));
   box.tags.scheme = Scheme::flat;
-  const LimitSurface surface(box, {Scheme::flat}, std::make_shared<BoundsCache>());
-  const SurfaceBvh model_a(surface), model_b(surface);
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  const Surface surface(box);
   const double side = surface.size();
   for (int trial = 0; trial < 200; ++trial) {
     std::array<double, 3> shift{};
@@ -426,15 +403,13 @@ TEST(collide, equal_solids_in_one_place_intersect_and_only_touching_ones_never_d
     const std::size_t axis = random() % 3;
     shift[axis] = random() % 2 == 0 ? side : -side;
     const Collision touching =
-        collide({model_a, scratch_a, {}},
-                {model_b, scratch_b, Motion::translation({shift[0], shift[1], shift[2]})}, options);
+        collide(surface, surface.at(Motion::translation({shift[0], shift[1], shift[2]})), options);
     EXPECT_NE(touching.verdict, Verdict::intersecting) << trial;
     shift[axis] *= 0.75;
     const bool apart =
         std::fabs(shift[0]) >= side || std::fabs(shift[1]) >= side || std::fabs(shift[2]) >= side;
     const Collision deep =
-        collide({model_a, scratch_a, {}},
-                {model_b, scratch_b, Motion::translation({shift[0], shift[1], shift[2]})}, options);
+        collide(surface, surface.at(Motion::translation({shift[0], shift[1], shift[2]})), options);
     if (!apart) {
       EXPECT_EQ(deep.verdict, Verdict::intersecting) << trial;
     }
@@ -448,39 +423,34 @@ TEST(collide, edges_between_quads_and_polygons_are_closed) {
     oracle::TaggedMesh shape = oracle::meshes::prism(3);
     if (scheme != Scheme::catmark) shape.polygons = oracle::meshes::pyramid(4).polygons;
     if (scheme != Scheme::catmark) shape.points = oracle::meshes::pyramid(4).points;
-    const LimitSurface surface(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model(surface);
-    SurfaceWorkspace scratch(model);
+    const Surface surface(testing::control_mesh(shape), {.scheme = scheme});
+    const SurfaceBvh& model = surface.data()->bvh();
     ASSERT_FALSE(model.solid().fillers().empty()) << name_of(scheme);
-    const PowerOfTwo back = surface.scale().inverse();
+    const PowerOfTwo back = model.surface().scale().inverse();
     for (const LimitTriangle& filler : model.solid().fillers()) {
       const auto& [a, b, m] = filler.corners;
       // Between the chord and the curve, and beyond the curve.
       const Point3 chord = a + 0.5 * (b - a);
       const Vector3 out = m - chord;
-      EXPECT_EQ(contains(scratch, back.apply(chord - 0.5 * out)), std::optional<bool>(true));
-      EXPECT_EQ(contains(scratch, back.apply(chord + 0.3 * out)), std::optional<bool>(true));
-      EXPECT_EQ(contains(scratch, back.apply(m + 2 * out)), std::optional<bool>(false));
+      EXPECT_EQ(contains(surface, back.apply(chord - 0.5 * out)), std::optional<bool>(true));
+      EXPECT_EQ(contains(surface, back.apply(chord + 0.3 * out)), std::optional<bool>(true));
+      EXPECT_EQ(contains(surface, back.apply(m + 2 * out)), std::optional<bool>(false));
     }
   }
 }
 
 TEST(collide, answers_the_same_with_tight_trees) {
-  const LimitSurface a = testing::surface_of(oracle::meshes::icosahedron()),
-                     b = testing::surface_of(oracle::meshes::bipyramid(7));
   std::mt19937_64 random(31);
   std::vector<Motion> places;
   for (int i = 0; i < 60; ++i) {
     places.push_back(testing::random_placement(random, testing::random_vector(random, 2)));
   }
   for (const bool tight : {false, true}) {
-    const SurfaceBvh model_a(a, {.tight = tight}), model_b(b, {.tight = tight});
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Surface a = testing::public_surface(oracle::meshes::icosahedron(), {.tight = tight}),
+                  b = testing::public_surface(oracle::meshes::bipyramid(7), {.tight = tight});
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const Collision answer =
-          collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, testing::verdict_only());
-      const Distance far =
-          snug::distance({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {1e-4, 0});
+      const Collision answer = collide(a, b.at(places[i]), testing::verdict_only());
+      const Distance far = distance(a, b.at(places[i]), {1e-4, 0});
       ASSERT_NE(answer.verdict, Verdict::undecided) << i;
       EXPECT_EQ(far.outcome, Outcome::complete);
       EXPECT_EQ(answer.verdict == Verdict::separated, far.distance.lower > 0 || far.distance.upper > 1e-4)
@@ -491,8 +461,8 @@ TEST(collide, answers_the_same_with_tight_trees) {
 }
 
 TEST(collide, refuses_a_model_without_surface) {
-  const LimitSurface nothing = testing::surface_of(oracle::meshes::grid(1, 1, oracle::Boundary::none));
-  EXPECT_THROW(SurfaceBvh{nothing}, InputError);
+  const Surface nothing = testing::public_surface(oracle::meshes::grid(1, 1, oracle::Boundary::none));
+  EXPECT_THROW(nothing.prepare(), InputError);
 }
 
 }  // namespace

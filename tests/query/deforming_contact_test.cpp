@@ -1,7 +1,7 @@
 // First times of contact where control points move, against limit points of the twins, which go along lines too: two of
 // them are brought together at a known time, of every scheme, tag and way to deform; walls and boxes have known times.
 
-#include <snug/query/pair_queries.h>
+#include <snug/time_of_contact.h>
 
 #include <gtest/gtest.h>
 #include <snug/search/crossing.h>
@@ -66,8 +66,7 @@ TEST(deforming_contact, with_a_wall_is_that_of_the_first_point) {
     const ControlMesh wall_mesh = testing::box({-1, -6, -6}, {0, 6, 6}, true);
     std::vector<Point3> wall_end = wall_mesh.points;
     for (Point3& p : wall_end) p = {p.x + ahead, 1.5 * p.y, 1.5 * p.z};
-    const LimitSurface surface(mesh, options, std::make_shared<BoundsCache>()),
-        wall(wall_mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
+    const Surface surface = testing::public_surface(mesh, options), wall(wall_mesh, {.scheme = Scheme::flat});
     std::vector<Point3> first = mesh.points, last = end;
     if (!flat) {
       first = shape.sample(testing::with_points(shape.twin, mesh.points));
@@ -78,11 +77,8 @@ TEST(deforming_contact, with_a_wall_is_that_of_the_first_point) {
       const long double gap = first[v].x, closing = gap - (static_cast<long double>(last[v].x) - ahead);
       if (closing >= gap) exact = std::min(exact, gap / closing);
     }
-    const SurfaceBvh model(surface), wall_model(wall);
-    SurfaceWorkspace scratch(model), wall_scratch(wall_model);
     const double tolerance = trial % 2 ? 1e-3 : 1e-5;
-    const TimeOfContact found = time_of_contact({wall_model, wall_scratch, Motion(), wall_end},
-                                                {model, scratch, Motion(), end}, {.tolerance = tolerance});
+    const TimeOfContact found = time_of_contact({wall, wall_end}, {surface, end}, {.tolerance = tolerance});
     const std::string what = "trial " + std::to_string(trial) + (flat ? "" : ": " + shape.name);
     tally.add(found);
     if (!(exact <= 1)) {
@@ -115,19 +111,15 @@ TEST(deforming_contact, that_is_a_translation_is_that_of_the_translation) {
   std::mt19937_64 random(23);
   for (int trial = 0; trial < 40; ++trial) {
     const ControlMesh mesh_a = testing::l_prism(true), mesh_b = testing::box({0, 0, 0}, {1, 2, 1.5}, true);
-    const LimitSurface a(mesh_a, {Scheme::flat}, std::make_shared<BoundsCache>()),
-        b(mesh_b, {Scheme::flat}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model_a(a), model_b(b);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Surface a(mesh_a, {.scheme = Scheme::flat}), b(mesh_b, {.scheme = Scheme::flat});
     const Vector3 from = random_vector(random, 6), by = -2 * from;
     const Motion pose = random_placement(random, from);
-    const Trajectory stays(Motion{});
-    const TimeOfContact rigid = time_of_contact(
-        {model_a, scratch_a, stays}, {model_b, scratch_b, Trajectory::steady(pose, {by, {0, 0, 1}, 0, {}})});
+    const TimeOfContact rigid =
+        time_of_contact(a, Motion(), b, Trajectory::steady(pose, {by, {0, 0, 1}, 0, {}}));
     std::vector<Point3> end;
     const Motion back = pose.with_offset({}).inverse();
     for (const Point3& p : mesh_b.points) end.push_back(p + back.rotate(by));
-    const TimeOfContact found = time_of_contact({model_a, scratch_a, stays}, {model_b, scratch_b, pose, end});
+    const TimeOfContact found = time_of_contact({a}, {b, end, pose});
     EXPECT_EQ(found.verdict, rigid.verdict);
     EXPECT_LE(found.time.lower, rigid.time.upper + 1e-12);
     // Within the tolerance they may be before they meet: pairs that are followed through time pass by that.
@@ -140,12 +132,8 @@ TEST(deforming_contact, that_is_a_translation_is_that_of_the_translation) {
 // Boxes with these corners at first and at the end.
 struct Boxes {
   TimeOfContact ask(const TimeOfContactOptions& options = {}) const {
-    const LimitSurface a(first_a, {Scheme::flat}, std::make_shared<BoundsCache>()),
-        b(first_b, {Scheme::flat}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model_a(a), model_b(b);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-    return time_of_contact({model_a, scratch_a, Motion(), last_a.points},
-                           {model_b, scratch_b, Motion(), last_b.points}, options);
+    const Surface a(first_a, {.scheme = Scheme::flat}), b(first_b, {.scheme = Scheme::flat});
+    return time_of_contact({a, last_a.points}, {b, last_b.points}, options);
   }
   ControlMesh first_a, last_a, first_b, last_b;
 };
@@ -244,109 +232,6 @@ TEST(deforming_contact, that_touches_at_the_end_alone_or_passes_closely_is_told_
   std::cout << "  past: " << found.steps << " looks, " << static_cast<int>(found.verdict) << '\n';
 }
 
-TEST(deforming_contact, knows_the_speed_of_all_that_meets) {
-  std::mt19937_64 random(24);
-  const std::vector<Shape> all = shapes(33);
-  for (std::size_t trial = 0; trial < testing::trials(120); ++trial) {
-    const Shape &shape_a = all[random() % all.size()], &shape_b = all[random() % all.size()];
-    const Body a(
-        shape_a, shape_a.mesh.points,
-        deformed(shape_a.mesh.points, trial % 3 == 1 ? 8 : static_cast<int>(trial % way_count), random));
-    // Mostly so small that it meets few patches of A.
-    std::vector<Point3> begin_b = shape_b.mesh.points;
-    for (Point3& p : begin_b) p = Point3{} + (trial % 4 == 0 ? 1.0 : 0.01) * (p - Point3{});
-    const Body b(
-        shape_b, begin_b,
-        translated(deformed(begin_b, trial % 4 == 0 ? static_cast<int>(random() % way_count) : 0, random),
-                   random_vector(random, trial % 4 == 0 ? 1 : 0)));
-    std::size_t i = random() % a.first.size();
-    const std::size_t j = random() % b.first.size();
-    for (std::size_t k = 0; k < a.first.size() && trial % 2 == 0; ++k) {
-      if (distance(a.first[k], a.last[k]) > distance(a.first[i], a.last[i])) i = k;
-    }
-    const double s = unit(random), before = s * unit(random), after = s + (1 - s) * unit(random);
-    const Trajectory of_a{random_placement(random, random_vector(random, 1))};
-    const Motion turn = random_placement(random, {});
-    const Trajectory of_b = turn.with_offset(of_a.start().apply(a.at(i, s)) - turn.apply(b.at(j, s)));
-    SurfaceWorkspace scratch_a(a.model), scratch_b(b.model);
-    const MovingBvh moving_a{a.model, scratch_a, of_a, a.end}, moving_b{b.model, scratch_b, of_b, b.end};
-    MovingBody body_a(moving_a), body_b(moving_b);
-    body_a.enter_piece(0);
-    body_b.enter_piece(0);
-    const Vector3 against =
-        of_b.start().rotate(b.last[j] - b.first[j]) - of_a.start().rotate(a.last[i] - a.first[i]);
-    const std::string what = a.name + " and " + b.name;
-    EXPECT_GE(body_a.speed() * (1 + 1e-12) + 1e-12, length(a.last[i] - a.first[i])) << what;
-    for (const Interval& times : {Interval{before, after}, Interval{s, s}, Interval{0, 1}}) {
-      const auto speed = LinearPatches::meeting_speed(*body_a.linear_patches(), *body_b.linear_patches(),
-                                                      times.lower, times.upper);
-      ASSERT_TRUE(speed) << what;
-      EXPECT_GE(*speed * (1 + 1e-12) + 1e-12, length(against)) << what;
-      EXPECT_LE(*speed, 1.0001 * (body_a.speed() + body_b.speed()) * std::sqrt(3.0) + 1e-9) << what;
-    }
-  }
-}
-
-TEST(deforming_contact, knows_the_speed_of_all_points_that_turn_too) {
-  std::mt19937_64 random(26);
-  const std::vector<Shape> all = shapes(34);
-  for (std::size_t trial = 0; trial < testing::trials(80); ++trial) {
-    const Shape& shape = all[random() % all.size()];
-    const std::vector<Point3>& begin = shape.mesh.points;
-    const int way = static_cast<int>(trial % way_count);
-    // Large at the beginning or at the end.
-    std::vector<Point3> end = deformed(begin, way, random);
-    for (Point3& p : end) p = Point3{} + (trial % 3 == 0 ? 5.0 : 1.0) * (p - Point3{});
-    const Body body(shape, begin, end);
-    const Motion from = random_placement(random, random_vector(random, 1));
-    const Trajectory motion =
-        trial % 2 ? testing::any_motion(3, random)
-                  : Trajectory::screw(from, random_placement(random, random_vector(random, 1)));
-    SurfaceWorkspace scratch(body.model);
-    const MovingBvh moving{body.model, scratch, motion, body.end};
-    MovingBody bounded(moving);
-    bounded.enter_piece(0);
-    const double speed = bounded.speed();
-    EXPECT_FALSE(bounded.linear_patches());
-    double fastest = 0;
-    for (const double s : {0.0, 0.3, 0.7, 1 - 0x1p-20}) {
-      const Motion now = motion.at(s), next = motion.at(s + 0x1p-20);
-      for (std::size_t i = 0; i < body.first.size(); ++i) {
-        const double way_there = distance(now.apply(body.at(i, s)), next.apply(body.at(i, s + 0x1p-20)));
-        fastest = std::max(fastest, way_there * 0x1p20);
-      }
-    }
-    EXPECT_LE(fastest, speed * (1 + 1e-6) + 1e-8) << shape.name << " by way " << way;
-    EXPECT_LE(speed, 8 * fastest) << shape.name << " by way " << way;
-  }
-}
-
-TEST(deforming_contact, looks_at_control_points_within_their_rounding) {
-  std::mt19937_64 random(25);
-  for (int trial = 0; trial < 300; ++trial) {
-    const double scale = std::exp2(static_cast<int>(random() % 40) - 20);
-    ControlMesh mesh = testing::box({0, 0, 0}, {1, 1, 1}, true);
-    std::vector<Point3> end = mesh.points;
-    for (Point3& p : mesh.points) p = Point3{} + scale * random_vector(random, 1);
-    for (Point3& p : end)
-      p = Point3{} + std::exp2(static_cast<int>(random() % 20) - 10) * scale * random_vector(random, 1);
-    const LimitSurface surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model(surface);
-    SurfaceWorkspace scratch(model);
-    Deformation deformation(model, scratch, end);
-    for (const double s : {0.0, 1.0, unit(random), std::nextafter(1.0, 0.0), 0x1p-60}) {
-      const Deformation::Shape shape = deformation.at(s);
-      for (std::size_t v = 0; v < end.size(); ++v) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          const long double begin = mesh.points[v][k], way = static_cast<long double>(end[v][k]) - begin;
-          const long double off = shape.model.surface().mesh().points[v][k] - (begin + s * way);
-          ASSERT_LE(std::fabs(off), shape.error * 0.6L) << s;
-        }
-      }
-    }
-  }
-}
-
 // Down there pieces keep their size beside the origin alone.
 TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
   ControlMesh mesh = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::pyramid(7)));
@@ -370,14 +255,11 @@ TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
 
 TEST(deforming_contact, says_what_it_cannot_do) {
   const ControlMesh mesh = cube(1);
-  const LimitSurface a(mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
-  const SurfaceBvh model(a), same(a);
-  SurfaceWorkspace one(model), other(same);
+  const Surface a(mesh, {.scheme = Scheme::flat});
   const auto refusal = [&](const std::vector<Point3>& end,
                            const Trajectory& motion = Motion()) -> std::string {
-    const Trajectory stays(Motion{});
     try {
-      static_cast<void>(time_of_contact({model, one, stays}, {same, other, motion, end}));
+      static_cast<void>(time_of_contact({a}, {a, end, motion}));
     } catch (const InputError& error) {
       return error.what();
     }

@@ -1,16 +1,14 @@
-#include <snug/query/hull.h>
+#include <snug/hull.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/query/deviation.h>
-#include <snug/query/tessellate.h>
 #include <testing/hulls.h>
+#include <testing/surfaces.h>
 #include <testing/tagged.h>
 
 #include <cmath>
 #include <iostream>
 #include <numbers>
-#include <set>
 
 namespace snug::hull_test {
 namespace {
@@ -18,7 +16,9 @@ namespace {
 namespace meshes = oracle::meshes;
 using oracle::Rules;
 using oracle::TaggedMesh;
+using testing::both;
 using testing::HullCounts;
+using testing::moved;
 
 constexpr SchemeOptions bilinear{Scheme::bilinear};
 constexpr Rules loop{.scheme = oracle::PrimalScheme::loop};
@@ -31,19 +31,17 @@ SchemeOptions options_of(const oracle::WindingScheme& scheme) {
   return options;
 }
 
-// A surface with its tree.
 struct Model {
   explicit Model(const TaggedMesh& mesh, const oracle::WindingScheme& scheme = Rules{})
       : Model(testing::control_mesh(mesh), options_of(scheme)) {}
   Model(ControlMesh mesh, const SchemeOptions& options)
-      : surface(std::move(mesh), options, std::make_shared<BoundsCache>()), bvh(surface) {}
+      : surface(testing::public_surface(std::move(mesh), options)) {}
   [[nodiscard]] Hulls hulls(const HullOptions& options, const Run& run = {}) const {
-    return snug::hull(bvh, options, run);
+    return hull(surface, options, run);
   }
   [[nodiscard]] Hulls hulls(double tolerance) const { return hulls(HullOptions{.error = tolerance}); }
 
-  LimitSurface surface;
-  SurfaceBvh bvh;
+  Surface surface;
 };
 
 TaggedMesh torus(std::uint32_t n, std::uint32_t m) {
@@ -77,25 +75,8 @@ TaggedMesh star() {
   return mesh;
 }
 
-TaggedMesh moved(TaggedMesh mesh, double factor, const oracle::Point& by) {
-  for (oracle::Point& p : mesh.points) {
-    for (std::size_t a = 0; a < 3; ++a) p[a] = factor * p[a] + by[a];
-  }
-  return mesh;
-}
-
 TaggedMesh turned_inside_out(TaggedMesh mesh) {
   for (auto& polygon : mesh.polygons) std::reverse(polygon.begin(), polygon.end());
-  return mesh;
-}
-
-TaggedMesh both(TaggedMesh mesh, const TaggedMesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.points.size());
-  mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
-  for (auto polygon : other.polygons) {
-    for (std::uint32_t& v : polygon) v += first;
-    mesh.polygons.push_back(polygon);
-  }
   return mesh;
 }
 
@@ -370,87 +351,7 @@ TEST(hulls, stop_when_asked) {
   const Model model(star(), loop);
   const std::atomic<bool> stop = true;
   const WorkMonitor monitor{{}, &stop};
-  EXPECT_THROW(static_cast<void>(hull(model.bvh, {.error = 0.01}, {.monitor = &monitor})), Interrupted);
-}
-
-std::set<HullFault> faults_of(const Model& model, const Hulls& hulls, double tolerance) {
-  std::set<HullFault> faults;
-  for (const HullProblem& p : problems_of(model.bvh, hulls, {.error = tolerance})) faults.insert(p.fault);
-  return faults;
-}
-
-// The final check of hull() does not know how its hulls were made: it must find their faults.
-TEST(hulls, that_are_spoiled_are_found_out) {
-  const Model model(meshes::cube());
-  const double tolerance = 0.02;
-  const Hulls good = model.hulls(tolerance);
-  ASSERT_EQ(good.outcome, Outcome::complete);
-  EXPECT_TRUE(faults_of(model, good, tolerance).empty());
-  const Point3 centre{0.5, 0.5, 0.5};
-  for (const bool inner : {true, false}) {
-    const auto spoiled = [&](const std::function<void(Hull&)>& spoil) {
-      Hulls bad = good;
-      spoil(inner ? *bad.inner : *bad.outer);
-      return faults_of(model, bad, tolerance);
-    };
-    const auto move = [&](double factor) {
-      return spoiled([&](Hull& h) { h.positions[11] = centre + factor * (h.positions[11] - centre); });
-    };
-    EXPECT_TRUE(move(inner ? 1.1 : 0.9).contains(HullFault::meets_surface));
-    EXPECT_TRUE(move(inner ? 0.9 : 1.1).contains(HullFault::no_position));
-    EXPECT_TRUE(spoiled([](Hull& h) {
-                  std::swap(h.triangles[5][0], h.triangles[5][1]);
-                }).contains(HullFault::meets_itself));
-    EXPECT_TRUE(spoiled([](Hull& h) {
-                  h.triangles.erase(h.triangles.begin() + 5);
-                  h.owners.pop_back();
-                }).contains(HullFault::not_around));
-    EXPECT_TRUE(spoiled([](Hull& h) {
-                  h.triangles.push_back(h.triangles[5]);
-                  h.owners.push_back(0);
-                }).contains(HullFault::meets_itself));
-    // A fold: a vertex moved sideways beyond its neighbours.
-    EXPECT_TRUE(spoiled([](Hull& h) {
-                  const auto [a, b, c] = h.triangles[5];
-                  h.positions[a] = h.positions[a] + 2.5 * ((h.positions[b] - h.positions[a]) +
-                                                           (h.positions[c] - h.positions[a]));
-                }).contains(HullFault::meets_itself));
-    // Two vertices at one place.
-    EXPECT_TRUE(spoiled([](Hull& h) {
-                  h.positions[h.triangles[5][0]] = h.positions[h.triangles[5][1]];
-                }).contains(HullFault::meets_itself));
-  }
-  Hulls swapped = good;
-  std::swap(swapped.inner, swapped.outer);
-  EXPECT_EQ(faults_of(model, swapped, tolerance), std::set{HullFault::not_around});
-  Hulls equal = good;
-  equal.inner = equal.outer;
-  EXPECT_TRUE(faults_of(model, equal, tolerance).contains(HullFault::meets_other));
-  EXPECT_TRUE(faults_of(model, good, good.outer->gap / 20).contains(HullFault::no_position));
-}
-
-// A part of a hull that lies on the other side of the surface is found out although the surface is around and inside.
-TEST(hulls, with_a_component_on_the_wrong_side_are_found_out) {
-  const TaggedMesh mesh = both(meshes::cube(), moved(meshes::cube(), 1, {3, 0, 0}));
-  const Model model(mesh);
-  const double tolerance = 0.05;
-  Hulls hulls = model.hulls(tolerance);
-  ASSERT_EQ(hulls.outcome, Outcome::complete);
-  for (const bool inner : {true, false}) {
-    Hulls bad = hulls;
-    Hull& hull = inner ? *bad.inner : *bad.outer;
-    // A small closed piece, beside the surface or in it.
-    const auto first = static_cast<std::uint32_t>(hull.positions.size());
-    const Point3 at = inner ? Point3{-0.01, 0.5, 0.5} : Point3{0.2, 0.5, 0.5};
-    for (const Vector3& d : {Vector3{0, 0, 0}, {-1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 1e-3}}) {
-      hull.positions.push_back(at + d);
-    }
-    for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 3u, 1u}, {1u, 3u, 2u}, {0u, 2u, 3u}}) {
-      hull.triangles.push_back({first + a, first + b, first + c});
-      hull.owners.push_back(0);
-    }
-    EXPECT_TRUE(faults_of(model, bad, 0.5).contains(HullFault::not_around)) << inner;
-  }
+  EXPECT_THROW(static_cast<void>(hull(model.surface, {.error = 0.01}, {.monitor = &monitor})), Interrupted);
 }
 
 }  // namespace

@@ -6,10 +6,9 @@
 #include <oracle/polygon_twin.h>
 #include <oracle/polyhedron_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/query/bound.h>
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
-#include <snug/surface/evaluate.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
+#include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <testing/counts.h>
 #include <testing/exact_triangles.h>
@@ -85,15 +84,6 @@ Truth truth_of(const Soup& a, const Soup& b, const ExactPoint& moved) {
   return truth;
 }
 
-struct Body {
-  LimitSurface surface;
-  SurfaceBvh model;
-  SurfaceWorkspace scratch;
-  Body(ControlMesh mesh, const SchemeOptions& options)
-      : surface(std::move(mesh), options, std::make_shared<BoundsCache>()), model(surface), scratch(model) {}
-  [[nodiscard]] PlacedBvh at(const Motion& pose = {}) { return {model, scratch, pose}; }
-};
-
 Motion moved_by(const ExactPoint& by) {
   return Motion::translation(
       {static_cast<double>(by[0]), static_cast<double>(by[1]), static_cast<double>(by[2])});
@@ -109,15 +99,15 @@ TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
     if (a.faces.empty() || b.faces.empty()) continue;
     const ExactPoint by = trial % 5 == 0 ? ExactPoint{} : random_point(random, extent);
     const Truth truth = truth_of(a, b, by);
-    Body one(a.mesh(), {Scheme::flat}), other(b.mesh(), {Scheme::flat});
+    const Surface one(a.mesh(), {.scheme = Scheme::flat}), other(b.mesh(), {.scheme = Scheme::flat});
     CollideOptions strict = testing::verdict_only(), tolerant = strict;
     tolerant.tolerance = 1e-9;
-    const Verdict verdict = collide(one.at(), other.at(moved_by(by)), strict).verdict;
-    const Verdict near = collide(one.at(), other.at(moved_by(by)), tolerant).verdict;
+    const Verdict verdict = collide(one, other.at(moved_by(by)), strict).verdict;
+    const Verdict near = collide(one, other.at(moved_by(by)), tolerant).verdict;
     DistanceOptions precision;
     precision.relative = 1e-9;
     precision.absolute = 1e-9;
-    const Distance found = distance(one.at(), other.at(moved_by(by)), precision);
+    const Distance found = distance(one, other.at(moved_by(by)), precision);
     EXPECT_EQ(found.outcome, Outcome::complete) << trial;
     if (truth.meet) {
       ++met;
@@ -155,13 +145,13 @@ TEST(flat, closest_points_are_those_of_the_triangles) {
     std::vector<oracle::Triangle> triangles;
     for (const auto& [a, b, c] : soup.faces) triangles.push_back({a, b, c});
     const oracle::PolyhedronTwin twin(points, triangles);
-    Body body(soup.mesh(), {Scheme::flat});
+    const Surface body(soup.mesh(), {.scheme = Scheme::flat});
     for (int k = 0; k < 20; ++k) {
       const ExactPoint at = random_point(random);
       const Point3 q{static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
       Precision options;
       options.relative = options.absolute = 1e-9;
-      const ClosestPoint found = closest_point(body.scratch, q, options);
+      const ClosestPoint found = closest_point(body, q, options);
       const mpq_class square = twin.squared_distance({q.x, q.y, q.z});
       EXPECT_EQ(found.outcome, Outcome::complete);
       EXPECT_LE(mpq_class(found.distance.lower) * mpq_class(found.distance.lower), square) << trial;
@@ -177,9 +167,10 @@ TEST(flat, has_one_kind_whose_bounds_are_rounding_alone) {
     const auto& first = mesh.polygons[0];
     mesh.creases = {{first[0], first[1], 2.5}, {first[1], first[2], 10}};
     mesh.corners = {{first[2], 1.5}};
-    const LimitSurface surface(testing::control_mesh(mesh), {Scheme::flat}, std::make_shared<BoundsCache>());
+    const Surface facets(testing::control_mesh(mesh), {.scheme = Scheme::flat});
+    const LimitSurface& surface = facets.data()->limit();
     EXPECT_EQ(surface.kind_count(), 1u) << name;
-    EXPECT_EQ(limit_to_faces(surface), 0.0) << name;
+    EXPECT_EQ(limit_to_faces(facets), 0.0) << name;
     testing::Pieces pieces(surface);
     for (std::size_t f = 0; f < surface.patch_count(); ++f) {
       const testing::KnownPiece known = pieces.root(PatchId(f));
@@ -198,8 +189,7 @@ TEST(flat, has_one_kind_whose_bounds_are_rounding_alone) {
 
 TEST(flat, refuses_other_faces_and_says_which_scheme_takes_them) {
   try {
-    const LimitSurface surface(testing::control_mesh(oracle::meshes::cube()), {Scheme::flat},
-                               std::make_shared<BoundsCache>());
+    const Surface surface(testing::control_mesh(oracle::meshes::cube()), {.scheme = Scheme::flat});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(
@@ -222,7 +212,7 @@ TEST(bilinear, points_are_those_of_the_quads) {
       mesh.points.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
     }
     mesh.add_face(face);
-    const LimitSurface surface(mesh, {Scheme::bilinear}, std::make_shared<BoundsCache>());
+    const Surface surface(mesh, {.scheme = Scheme::bilinear});
     EXPECT_EQ(surface.kind_count(), 1u);
     for (std::uint32_t corner = 0; corner < (size == 4 ? 1 : size); ++corner) {
       // The quad at this corner, by its vertices' coordinates times 2 size.
@@ -287,12 +277,13 @@ TEST(bilinear, distances_are_those_of_catmark_with_sharp_edges) {
     Distance found[2];
     Verdict verdicts[2];
     for (const bool use_sharp : {false, true}) {
-      const SchemeOptions options{use_sharp ? Scheme::catmark : Scheme::bilinear};
-      Body a(use_sharp ? sharp[0] : bilinear[0], options), b(use_sharp ? sharp[1] : bilinear[1], options);
-      found[use_sharp] = distance(a.at(), b.at(), precision);
+      const SurfaceOptions options{.scheme = use_sharp ? Scheme::catmark : Scheme::bilinear};
+      const Surface a(use_sharp ? sharp[0] : bilinear[0], options),
+          b(use_sharp ? sharp[1] : bilinear[1], options);
+      found[use_sharp] = distance(a, b, precision);
       CollideOptions wanted = testing::verdict_only();
       wanted.tolerance = 1e-6;
-      verdicts[use_sharp] = collide(a.at(), b.at(), wanted).verdict;
+      verdicts[use_sharp] = collide(a, b, wanted).verdict;
     }
     const bool apart = verdicts[0] == Verdict::separated;
     meet += !apart;
@@ -398,17 +389,16 @@ TEST(plain_meshes, are_as_far_from_surfaces_of_every_scheme_as_their_samples_say
       faces.add_face(face);
     }
     const std::string where = other.name + ", " + name_of(plain) + ", trial " + std::to_string(trial);
-    Body a(scaled(faces, factor), {plain}),
+    const Surface a(scaled(faces, factor), {.scheme = plain}),
         sharp(scaled(with_sharp_edges(faces), factor),
-              {plain == Scheme::flat ? Scheme::loop : Scheme::catmark}),
-        b(scaled(testing::control_mesh(other.mesh), factor), {other.scheme});
+              {.scheme = plain == Scheme::flat ? Scheme::loop : Scheme::catmark}),
+        b(scaled(testing::control_mesh(other.mesh), factor), {.scheme = other.scheme});
     const DistanceOptions precision{.absolute = 1e-4 * factor};
-    const Distance found = distance(a.at(), b.at(), precision),
-                   same = distance(sharp.at(), b.at(), precision);
+    const Distance found = distance(a, b, precision), same = distance(sharp, b, precision);
     EXPECT_EQ(found.outcome, Outcome::complete) << where;
     EXPECT_LE(found.distance.lower, same.distance.upper * (1 + 1e-12)) << where;
     EXPECT_LE(same.distance.lower, found.distance.upper * (1 + 1e-12)) << where;
-    const Verdict verdict = collide(a.at(), b.at(), testing::verdict_only()).verdict;
+    const Verdict verdict = collide(a, b, testing::verdict_only()).verdict;
     (verdict == Verdict::separated ? apart : meet) += 1;
     EXPECT_EQ(verdict == Verdict::separated, found.distance.lower > 0) << where;
     // Against samples: those of the other surface, and triangles or a lattice on the bilinear patches.
@@ -462,16 +452,15 @@ TEST(plain_meshes, of_both_schemes_are_as_far_apart_as_their_sharp_twins) {
     for (int k = 0; k < 4; ++k) quad.points.push_back(point(trial % 90));
     triangle.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
     quad.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
-    Body a(triangle, {Scheme::flat}), b(quad, {Scheme::bilinear});
-    Body sharp_a(with_sharp_edges(triangle), {Scheme::loop}),
-        sharp_b(with_sharp_edges(quad), {Scheme::catmark});
+    const Surface a(triangle, {.scheme = Scheme::flat}), b(quad, {.scheme = Scheme::bilinear}),
+        sharp_a(with_sharp_edges(triangle), {.scheme = Scheme::loop}),
+        sharp_b(with_sharp_edges(quad), {.scheme = Scheme::catmark});
     const DistanceOptions precision{.absolute = 1e-6};
-    const Distance found = distance(a.at(), b.at(), precision),
-                   same = distance(sharp_a.at(), sharp_b.at(), precision);
+    const Distance found = distance(a, b, precision), same = distance(sharp_a, sharp_b, precision);
     EXPECT_EQ(found.outcome, Outcome::complete);
     EXPECT_LE(found.distance.lower, same.distance.upper * (1 + 1e-12)) << trial;
     EXPECT_LE(same.distance.lower, found.distance.upper * (1 + 1e-12)) << trial;
-    const bool separated = collide(a.at(), b.at(), testing::verdict_only()).verdict == Verdict::separated;
+    const bool separated = collide(a, b, testing::verdict_only()).verdict == Verdict::separated;
     EXPECT_EQ(separated, found.distance.lower > 0) << trial;
     (separated ? apart : meet) += 1;
   }

@@ -7,10 +7,6 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
-#include <snug/search/surface_data.h>
-#include <snug/search/surface_workspace.h>
 #include <testing/places.h>
 
 #include <testing/files.h>
@@ -19,14 +15,6 @@ namespace snug::queries_test {
 namespace {
 
 std::string model(const char* name) { return testing::models_dir() + "/" + name; }
-
-// The same question to the rooms inside, with workspaces of their own.
-struct Inside {
-  explicit Inside(const Surface& surface) : bvh(surface.data()->limit()), pieces(bvh) {}
-  [[nodiscard]] PlacedBvh at(const Motion& pose = {}) { return {bvh, pieces, pose}; }
-  SurfaceBvh bvh;
-  SurfaceWorkspace pieces;
-};
 
 std::vector<PosePair> some_poses(double size) {
   std::vector<PosePair> poses;
@@ -37,15 +25,17 @@ std::vector<PosePair> some_poses(double size) {
   return poses;
 }
 
-TEST(handles, answer_with_the_bits_of_the_rooms_inside) {
+TEST(handles, answer_with_the_same_bits_alone_and_among_others) {
   const Surface a = load(model("pawn.obj")), b = load(model("star.obj"));
-  Inside in_a(a), in_b(b);
+  const Surface again_a = load(model("pawn.obj")), again_b = load(model("star.obj"));
+  Workspace own;
   const std::vector<PosePair> poses = some_poses(a.size());
   const std::vector<Collision> collisions = collide(a, b, poses);
   const std::vector<Distance> distances = distance(a, b, poses, {.absolute = {}, .relative = 1e-3});
   bool apart = false, meet = false;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Collision expected = collide(in_a.at(poses[i].a), in_b.at(poses[i].b), {});
+    const Collision expected =
+        collide(again_a.at(poses[i].a), again_b.at(poses[i].b), {}, {.workspace = &own});
     const Collision one = collide(a.at(poses[i].a), b.at(poses[i].b));
     for (const Collision& found : {one, collisions[i]}) {
       EXPECT_EQ(found.verdict, expected.verdict) << i;
@@ -53,16 +43,16 @@ TEST(handles, answer_with_the_bits_of_the_rooms_inside) {
       EXPECT_EQ(found.witness, expected.witness) << i;
     }
     const Distance gap = distance(a.at(poses[i].a), b.at(poses[i].b), {.absolute = {}, .relative = 1e-3});
-    EXPECT_EQ(
-        gap.distance,
-        distance(in_a.at(poses[i].a), in_b.at(poses[i].b), {.absolute = {}, .relative = 1e-3}).distance);
+    EXPECT_EQ(gap.distance, distance(again_a.at(poses[i].a), again_b.at(poses[i].b),
+                                     {.absolute = {}, .relative = 1e-3}, {.workspace = &own})
+                                .distance);
     EXPECT_EQ(gap.distance, distances[i].distance) << i;
     apart = apart || expected.verdict == Verdict::separated;
     meet = meet || expected.verdict == Verdict::intersecting;
   }
   EXPECT_TRUE(apart && meet);
   const Point3 q{1, 2, 3};
-  EXPECT_EQ(closest_point(a, q).distance, closest_point(in_a.pieces, q, {}).distance);
+  EXPECT_EQ(closest_point(a, q).distance, closest_point(again_a, q, {}, {.workspace = &own}).distance);
   EXPECT_EQ(closest_point(a, std::vector{q})[0].point, closest_point(a, q).point);
 }
 

@@ -3,14 +3,11 @@
 //
 //   SNUG_PARTS=10000 build/release/bin/tests/sharp_parts_test
 
-#include <snug/mesh.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <snug/mesh/split_polygon.h>
-#include <snug/query/bound.h>
-#include <snug/query/pair_queries.h>
-#include <snug/search/surface_workspace.h>
-#include <snug/surface/evaluate.h>
 #include <testing/cad_parts.h>
 #include <testing/counts.h>
 
@@ -33,10 +30,9 @@ using Place = std::array<Real, 3>;
 
 std::size_t trials(std::size_t usual) { return testing::number_of("SNUG_PARTS", usual); }
 
-LimitSurface surface_of(ControlMesh mesh) {
+Surface surface_of(ControlMesh mesh) {
   const Scheme scheme = natural_scheme(mesh);
-  return LimitSurface(std::move(mesh), {scheme, BoundaryRule::edge_and_corner},
-                      std::make_shared<BoundsCache>());
+  return Surface(std::move(mesh), {.scheme = scheme, .boundary = BoundaryRule::edge_and_corner});
 }
 
 Place place(const Point3& p) { return {p.x, p.y, p.z}; }
@@ -130,24 +126,18 @@ Real polyhedron_distance(const std::vector<Corners>& a, const std::vector<Corner
   return least;
 }
 
-Distance distance_of(const LimitSurface& a, const LimitSurface& b, const Vector3& move = {}) {
-  const SurfaceBvh model_a(a), model_b(b);
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-  DistanceOptions options{.absolute = 0, .relative = 0};
-  options.absolute = 1e-10;
-  return distance({model_a, scratch_a, Motion()}, {model_b, scratch_b, Motion::translation(move)}, options);
+Distance distance_of(const Surface& a, const Surface& b, const Vector3& move = {}) {
+  return distance(a, b.at(Motion::translation(move)), {.absolute = 1e-10, .relative = 0});
 }
 
-Collision collision_of(const LimitSurface& a, const LimitSurface& b, const Vector3& move, double tolerance) {
-  const SurfaceBvh model_a(a), model_b(b);
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+Collision collision_of(const Surface& a, const Surface& b, const Vector3& move, double tolerance) {
   CollideOptions options = testing::verdict_only();
   options.tolerance = tolerance;
   options.prove_contact = true;
-  return collide({model_a, scratch_a, Motion()}, {model_b, scratch_b, Motion::translation(move)}, options);
+  return collide(a, b.at(Motion::translation(move)), options);
 }
 
-LimitSurface sharp(ControlMesh mesh, double angle = default_sharp_angle) {
+Surface sharp(ControlMesh mesh, double angle = default_sharp_angle) {
   sharpen(mesh, angle);
   return surface_of(std::move(mesh));
 }
@@ -167,16 +157,16 @@ ControlMesh random_part(Random& random, bool triangles) {
   }
 }
 
-/// Calls visit(face, limit point) on a lattice of every patch.
+/// Calls visit(face, limit point) on a lattice of every triangle or quad.
 template <class Visit>
-void for_each_sample(const LimitSurface& surface, int steps, Visit&& visit) {
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (!surface.has_patch(PatchId(p))) continue;
-    const PatchEvaluator at(surface, PatchId(p));
-    for (int i = 0; i <= steps; ++i) {
-      for (int k = 0; i + k <= steps; ++k) {
-        visit(FaceId(surface.place(PatchId(p)).owner),
-              at(TriangleParameter{static_cast<double>(i) / steps, static_cast<double>(k) / steps}).point);
+void for_each_sample(const Surface& surface, int steps, Visit&& visit) {
+  for (std::uint32_t face = 0; face < surface.owner_count(); ++face) {
+    for (std::uint32_t corner = 0; corner < surface.corner_count(face); ++corner) {
+      for (int i = 0; i <= steps; ++i) {
+        for (int k = 0; k <= (surface.traits().triangular ? steps - i : steps); ++k) {
+          const snug::Place at{face, corner, static_cast<double>(i) / steps, static_cast<double>(k) / steps};
+          visit(FaceId(face), evaluate(surface, at).point);
+        }
       }
     }
   }
@@ -199,15 +189,15 @@ TEST(sharp_parts, every_limit_point_lies_on_its_face_and_every_face_is_covered) 
     const bool triangles = trial % 2 == 0, floats = trial % 3 == 0;
     ControlMesh part =
         testing::turned(random_part(random, triangles), random, floats, trial % 5 == 0 ? 50 : 0);
-    const LimitSurface surface = sharp(std::move(part));
+    const Surface surface = sharp(std::move(part));
     EXPECT_EQ(limit_to_faces(surface), 0.0);
     const double slack = floats && !triangles ? 1e-4 : 1e-11;  // polygons with rounded corners are no planes
     for_each_sample(surface, 5, [&](FaceId f, const Point3& p) {
       ASSERT_LE(distance_to_face(surface.mesh(), f, p), slack) << trial << ", face " << f.value();
     });
-    if (surface.options().scheme != Scheme::loop || trial % 4 != 0) continue;
+    if (surface.scheme() != Scheme::loop || trial % 4 != 0) continue;
     // The point at (u, v) of a triangle is that very point: all of it is covered.
-    for (std::uint32_t f = 0; f < surface.face_count(); ++f) {
+    for (std::uint32_t f = 0; f < surface.mesh().face_count(); ++f) {
       const auto face = surface.mesh().face(FaceId(f));
       const Point3 &a = surface.mesh().points[face[0].index()], &b = surface.mesh().points[face[1].index()],
                    &c = surface.mesh().points[face[2].index()];
@@ -223,7 +213,7 @@ TEST(sharp_parts, every_limit_point_lies_on_its_face_and_every_face_is_covered) 
 // Boundary points of a face, walked around once by the limit of its edges: with all points inside, it is
 // covered.
 TEST(sharp_parts, polygons_of_catmull_clark_end_at_their_edges) {
-  const LimitSurface surface = sharp(testing::pin(3, 0, 1, 11, false));
+  const Surface surface = sharp(testing::pin(3, 0, 1, 11, false));
   const ControlMesh& mesh = surface.mesh();
   for (std::uint32_t f = 0; f < 2; ++f) {
     const auto face = mesh.face(FaceId(f));
@@ -247,7 +237,7 @@ TEST(sharp_parts, an_outline_alone_does_not_hold_a_flat_face) {
     if (a == b || (a + 1) % 6 == b || (b + 1) % 6 == a) outline.tags.creases.push_back(tag);
   }
   for (std::size_t v = 0; v < outline.vertex_count(); ++v) outline.tags.corners.push_back({VertexId(v), 10});
-  const auto into_notch = [](const LimitSurface& surface) {
+  const auto into_notch = [](const Surface& surface) {
     double most = -INFINITY;
     for_each_sample(surface, 24, [&](FaceId, const Point3& p) {
       if (p.z > 1 - 1e-9) most = std::max(most, std::min(p.x, p.y) - 2);
@@ -315,20 +305,20 @@ TEST(sharp_parts, boxes_a_unit_in_the_last_place_apart_have_their_exact_distance
 }
 
 TEST(sharp_parts, boxes_five_into_each_other_meet_and_one_apart_do_not) {
-  const LimitSurface box = sharp(testing::box({0, 0, 0}, {40, 20, 10}, true));
+  const Surface box = sharp(testing::box({0, 0, 0}, {40, 20, 10}, true));
   EXPECT_EQ(collision_of(box, box, {35, 3, 2}, 0.01).verdict, Verdict::intersecting);
   EXPECT_NE(collision_of(box, box, {35, 0, 0}, 0.01).verdict, Verdict::separated);
   const Distance apart = distance_of(box, box, {41, 0, 0});
   EXPECT_NEAR(apart.distance.lower, 1, 1e-9);
   EXPECT_NEAR(apart.distance.upper, 1, 1e-9);
   // The facets without it: two blobs, far apart.
-  const LimitSurface blob = surface_of(testing::box({0, 0, 0}, {40, 20, 10}, true));
+  const Surface blob = surface_of(testing::box({0, 0, 0}, {40, 20, 10}, true));
   EXPECT_EQ(collision_of(blob, blob, {35, 3, 2}, 0.01).verdict, Verdict::separated);
 }
 
 TEST(sharp_parts, a_pin_in_a_hole_has_the_clearance_of_the_polygons) {
-  const LimitSurface plate = sharp(testing::perforated_plate(2, 2, 30, 5.2, 8, 96));
-  const LimitSurface pin = sharp(testing::pin(5, 0, 60, 96, true));
+  const Surface plate = sharp(testing::perforated_plate(2, 2, 30, 5.2, 8, 96));
+  const Surface pin = sharp(testing::pin(5, 0, 60, 96, true));
   const double clearance = 0.2 * std::cos(std::numbers::pi / 96);
   constexpr std::array heights{-20.0, 0.0, -60.0};
   for (const double z : std::span(heights).first(testing::fewer(heights.size()))) {
@@ -345,7 +335,7 @@ TEST(limit_to_faces, is_an_upper_bound_and_not_far_above) {
   for (std::size_t trial = 0; trial < trials(24); ++trial) {
     ControlMesh mesh = testing::turned(random_part(random, trial % 2 == 0), random, trial % 3 == 0);
     if (trial % 4 == 3) sharpen(mesh, 60);
-    const LimitSurface surface = surface_of(std::move(mesh));
+    const Surface surface = surface_of(std::move(mesh));
     const double bound = limit_to_faces(surface).value();
     Real seen = 0;
     for_each_sample(surface, 8, [&](FaceId f, const Point3& p) {
@@ -359,7 +349,7 @@ TEST(limit_to_faces, is_an_upper_bound_and_not_far_above) {
 
 TEST(limit_to_faces, of_a_smooth_box_is_near_the_truth) {
   for (const bool triangles : {true, false}) {
-    const LimitSurface surface = surface_of(testing::box({0, 0, 0}, {40, 20, 10}, triangles));
+    const Surface surface = surface_of(testing::box({0, 0, 0}, {40, 20, 10}, triangles));
     Real seen = 0;
     for_each_sample(surface, 40, [&](FaceId f, const Point3& p) {
       seen = std::max(seen, distance_to_face(surface.mesh(), f, p));
@@ -382,7 +372,7 @@ TEST(limit_to_faces, does_not_depend_on_the_size_of_coordinates_and_knows_no_dua
     EXPECT_NEAR(there, bound, 1e-12);
   }
   mesh = testing::box({0, 0, 0}, {1, 1, 1}, false);
-  const LimitSurface dual(mesh, {Scheme::doo_sabin}, std::make_shared<BoundsCache>());
+  const Surface dual(mesh, {.scheme = Scheme::doo_sabin});
   EXPECT_FALSE(limit_to_faces(dual));
 }
 

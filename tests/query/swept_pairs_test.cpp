@@ -1,12 +1,11 @@
 // Parts that slide, turn and screw past each other at a small clearance, against separating axes at many times.
 
-#include <snug/query/pair_queries.h>
+#include <snug/time_of_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_time_twin.h>
 #include <support/error.h>
 #include <testing/cad_parts.h>
-#include <testing/patches.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
 
@@ -32,10 +31,7 @@ struct Box {
 // A part made of boxes.
 struct Part {
   explicit Part(const std::vector<Box>& in_boxes)
-      : boxes(in_boxes),
-        surface(mesh_of(boxes), {Scheme::flat}, std::make_shared<BoundsCache>()),
-        model(surface),
-        scratch(model) {}
+      : boxes(in_boxes), surface(mesh_of(boxes), {.scheme = Scheme::flat}) {}
 
   static ControlMesh mesh_of(const std::vector<Box>& boxes) {
     ControlMesh mesh;
@@ -52,9 +48,7 @@ struct Part {
   }
 
   std::vector<Box> boxes;
-  LimitSurface surface;
-  SurfaceBvh model;
-  SurfaceWorkspace scratch;
+  Surface surface;
 };
 
 // How deep boxes of the parts overlap at a time, at most; negative: how far they are apart.
@@ -229,9 +223,9 @@ void check(std::mt19937_64& random, std::size_t trial, int samples, bool by_defa
   TimeOfContactOptions options;
   if (!by_default) options.tolerance = 0.05 * clearance;
   const bool swapped = random() % 2;
-  const MovingBvh a{still.model, still.scratch, motions.still},
-      b{moving.model, moving.scratch, motions.moving};
-  const TimeOfContact found = swapped ? time_of_contact(b, a, options) : time_of_contact(a, b, options);
+  const TimeOfContact found =
+      swapped ? time_of_contact(moving.surface, motions.moving, still.surface, motions.still, options)
+              : time_of_contact(still.surface, motions.still, moving.surface, motions.moving, options);
   tally.separated += found.verdict == Verdict::separated;
   tally.met += found.verdict == Verdict::intersecting || found.verdict == Verdict::within;
   tally.undecided += found.verdict == Verdict::undecided;

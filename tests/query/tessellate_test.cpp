@@ -1,17 +1,18 @@
-#include <snug/query/tessellate.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
+#include <snug/tessellate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/test_meshes.h>
 #include <snug/bounds/bounding_points.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/quadratic.h>
-#include <snug/mesh.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/deviation.h>
-#include <snug/surface/evaluate.h>
+#include <snug/search/surface_data.h>
 #include <testing/counts.h>
 #include <testing/places.h>
 #include <testing/scheme_surfaces.h>
+#include <testing/surfaces.h>
 #include <testing/tessellations.h>
 
 #include <algorithm>
@@ -23,13 +24,7 @@
 namespace snug::tessellate_test {
 namespace {
 
-LimitSurface model(const char* file) {
-  ControlMesh mesh = read_mesh(testing::models_dir() + "/" + file);
-  bool triangles = true;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f)
-    triangles = triangles && mesh.face(FaceId(f)).size() == 3;
-  return {std::move(mesh), {triangles ? Scheme::loop : Scheme::catmark}, std::make_shared<BoundsCache>()};
-}
+Surface model(const char* file) { return load(testing::models_dir() + "/" + file); }
 
 TessellateOptions to_tolerance(double tolerance) {
   TessellateOptions options;
@@ -38,12 +33,7 @@ TessellateOptions to_tolerance(double tolerance) {
   return options;
 }
 
-bool same(const Tessellation& a, const Tessellation& b) {
-  return a.positions == b.positions && a.normals == b.normals && a.triangles == b.triangles &&
-         a.owners == b.owners && a.error_bound == b.error_bound && a.position_error == b.position_error;
-}
-
-std::string refusal(const LimitSurface& surface, const TessellateOptions& options) {
+std::string refusal(const Surface& surface, const TessellateOptions& options) {
   try {
     static_cast<void>(tessellate(surface, options));
   } catch (const InputError& error) {
@@ -56,7 +46,7 @@ std::string refusal(const LimitSurface& surface, const TessellateOptions& option
 TEST(tessellate, is_watertight_and_near_for_every_scheme_and_tag) {
   std::size_t surfaces = 0, triangles = 0;
   testing::for_each_surface(301, [&](const testing::NamedSurface& named) {
-    const LimitSurface& surface = named.surface;
+    const Surface surface = testing::public_surface(named.surface.mesh(), named.surface.options());
     const double size = surface.size();
     for (const double tolerance : {10 * size, 0.02 * size}) {
       const Tessellation t = tessellate(surface, to_tolerance(tolerance));
@@ -92,7 +82,8 @@ double error_of_uniform(const LimitSurface& surface, const Patch& piece, unsigne
 TEST(tessellate, takes_a_quarter_of_the_triangles_of_uniform_refinement) {
   std::vector<double> ratios;
   for (const char* const file : {"pawn.obj", "ring.obj", "pin.obj", "bracket.obj", "head.obj"}) {
-    const LimitSurface surface = model(file);
+    const Surface whole = model(file);
+    const LimitSurface& surface = whole.data()->limit();
     // The first level with an error below 0.1 % of the size, on the patches that are worst one level before.
     unsigned level = 0;
     double error = INFINITY;
@@ -104,7 +95,7 @@ TEST(tessellate, takes_a_quarter_of_the_triangles_of_uniform_refinement) {
       }
       if (error <= wanted) break;
     }
-    const Tessellation t = tessellate(surface, to_tolerance(surface.scale().inverse().apply(error)));
+    const Tessellation t = tessellate(whole, to_tolerance(surface.scale().inverse().apply(error)));
     const double uniform =
         std::ldexp(static_cast<double>(surface.patch_count()), 2 * static_cast<int>(level));
     ratios.push_back(static_cast<double>(t.triangles.size()) / uniform);
@@ -117,7 +108,7 @@ TEST(tessellate, takes_a_quarter_of_the_triangles_of_uniform_refinement) {
 
 TEST(tessellate, bounds_are_tight) {
   for (const char* const file : {"pawn.obj", "ring.obj", "bracket.obj"}) {
-    const LimitSurface surface = model(file);
+    const Surface surface = model(file);
     const Tessellation t = tessellate(surface, to_tolerance(1e-3 * surface.size()));
     const double found = testing::expect_near(surface, t, file, 8);
     std::cout << file << ": bound " << t.error_bound / found << " times the largest distance\n";
@@ -126,7 +117,7 @@ TEST(tessellate, bounds_are_tight) {
 }
 
 TEST(tessellate, holds_a_longest_edge) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options = to_tolerance(1e-2 * surface.size());
   options.max_edge = 0.03 * surface.size();
   const Tessellation t = tessellate(surface, options);
@@ -138,7 +129,7 @@ TEST(tessellate, holds_a_longest_edge) {
 }
 
 TEST(tessellate, holds_a_largest_angle_of_normals) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options = to_tolerance(1e-2 * surface.size());
   options.max_angle = 10;
   const Tessellation t = tessellate(surface, options);
@@ -161,7 +152,7 @@ TEST(tessellate, holds_a_largest_angle_of_normals) {
 }
 
 TEST(tessellate, finds_a_small_error_for_so_many_triangles) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options;
   options.max_triangles = 5000;
   options.corners = true;
@@ -180,7 +171,7 @@ TEST(tessellate, finds_a_small_error_for_so_many_triangles) {
 }
 
 TEST(tessellate, says_what_is_proved_when_the_budget_ends) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options = to_tolerance(1e-5 * surface.size());
   const Tessellation t = tessellate(surface, options, {.max_splits = 2000});
   EXPECT_EQ(t.outcome, Outcome::budget_spent);
@@ -190,7 +181,7 @@ TEST(tessellate, says_what_is_proved_when_the_budget_ends) {
 }
 
 TEST(tessellate, proves_the_floats_that_it_returns) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options = to_tolerance(1e-6 * surface.size());
   options.single_precision = true;
   const Tessellation t = tessellate(surface, options, {.max_splits = 100'000});
@@ -202,7 +193,7 @@ TEST(tessellate, proves_the_floats_that_it_returns) {
 }
 
 TEST(tessellate, refuses_what_it_cannot_hold) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options;
   EXPECT_NE(refusal(surface, options).find("give error"), std::string::npos);
   options.error = -1;
@@ -224,13 +215,6 @@ TEST(tessellate, refuses_what_it_cannot_hold) {
   EXPECT_LE(tessellate(surface, options).triangles.size(), *options.max_triangles);
   options.max_angle = 0;
   EXPECT_NE(refusal(surface, options).find("angle"), std::string::npos);
-}
-
-TEST(tessellate, is_the_same_of_a_handle) {
-  const std::string file = testing::models_dir() + "/pawn.obj";
-  const Surface handle = load(file);
-  TessellateOptions options = to_tolerance(1e-2 * handle.size());
-  EXPECT_TRUE(same(tessellate(handle, options), tessellate(model("pawn.obj"), options)));
 }
 
 TEST(tessellate, stops_when_asked) {
@@ -256,7 +240,7 @@ std::pair<Place, Point3> sample(const Tessellation& t, std::size_t i, std::mt199
 TEST(tessellate, shows_no_error_from_where_it_is_seen) {
   std::mt19937_64 random(11);
   for (const char* const file : {"pawn.obj", "bracket.obj"}) {
-    const LimitSurface surface = model(file);
+    const Surface surface = model(file);
     std::size_t before = SIZE_MAX;
     for (const double away : {0.6, 2.0, 20.0}) {
       TessellateOptions options;
@@ -299,7 +283,7 @@ std::size_t thin_pieces(BoundsCache& library, const Patch& patch, double thin) {
 // Whole pieces only, split in four until they are thin, as in figure 5-3; flat ones of axes' directions are thin at once.
 TEST(tessellate, holds_the_thickness_of_pieces) {
   for (const char* const file : {"pawn.obj", "bracket.obj"}) {
-    const LimitSurface surface = model(file);
+    const Surface surface = model(file);
     std::size_t before = 0;
     for (const double share : {0.02, 0.004, 0.001}) {
       TessellateOptions options;
@@ -314,15 +298,15 @@ TEST(tessellate, holds_the_thickness_of_pieces) {
       for (const auto& [x, y, z] : t.triangles)
         triangles.push_back({t.positions[x], t.positions[y], t.positions[z]});
       const double within = 3.5 * *options.max_thickness;
-      const Deviation found =
-          deviation(SurfaceBvh(surface), triangles, {.absolute = within / 64, .threshold = within});
+      const Deviation found = deviation(surface, triangles, {.absolute = within / 64, .threshold = within});
       EXPECT_LE(found.from_surface.distance.upper, within);
       EXPECT_LE(found.from_candidate.distance.upper, within);
       before = t.triangles.size();
-      const double scaled = surface.scale().apply(*options.max_thickness);
+      const LimitSurface& limit = surface.data()->limit();
+      const double scaled = limit.scale().apply(*options.max_thickness);
       std::size_t pieces = 0;
-      for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-        pieces += thin_pieces(surface.library(), surface.patch(PatchId(p)), scaled);
+      for (std::size_t p = 0; p < limit.patch_count(); ++p) {
+        pieces += thin_pieces(limit.library(), limit.patch(PatchId(p)), scaled);
       }
       EXPECT_GE(t.triangles.size(), pieces) << "each piece is one triangle at least";
       EXPECT_LE(t.triangles.size(), pieces + pieces / 4) << "neighbours are cut as needed";
@@ -331,7 +315,7 @@ TEST(tessellate, holds_the_thickness_of_pieces) {
 }
 
 TEST(tessellate, refuses_eyes_and_thicknesses_that_are_none) {
-  const LimitSurface surface = model("pawn.obj");
+  const Surface surface = model("pawn.obj");
   TessellateOptions options;
   options.view = {{0, 0, NAN}, 0.1};
   EXPECT_NE(refusal(surface, options).find("eye"), std::string::npos);

@@ -1,7 +1,6 @@
-#include <snug/query/tessellate.h>
+#include <snug/tessellate.h>
 
 #include <gtest/gtest.h>
-#include <snug/mesh.h>
 #include <testing/places.h>
 
 namespace snug::tessellate_threads_test {
@@ -9,8 +8,7 @@ namespace {
 
 TEST(tessellate, does_not_depend_on_threads) {
   for (const char* const file : {"pawn.obj", "ring.obj", "bracket.obj"}) {
-    const LimitSurface surface(read_mesh(testing::models_dir() + "/" + file), {Scheme::catmark},
-                               std::make_shared<BoundsCache>());
+    const Surface surface = load(testing::models_dir() + "/" + file, {.scheme = Scheme::catmark});
     TessellateOptions options;
     options.error = 1e-3 * surface.size();
     const Tessellation one = tessellate(surface, options, {.threads = 1});

@@ -1,11 +1,12 @@
 // The verdict does not depend on the kind of witness: it is the same for exact, approximate and no witnesses. Approximate ones are as near their limit points as they say.
 
 #include <gtest/gtest.h>
-#include <snug/query/pair_queries.h>
-#include <snug/surface/evaluate.h>
+#include <snug/collide.h>
+#include <snug/evaluate.h>
 #include <testing/counts.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <array>
@@ -19,10 +20,10 @@ namespace {
 using testing::NamedSurface;
 
 // The limit point at the place that a witness is said to have, by the general evaluation.
-void expect_near_limit(const LimitSurface& surface, const Motion& pose, const LimitPoint& witness,
+void expect_near_limit(const Surface& surface, const Motion& pose, const LimitPoint& witness,
                        const std::string& where) {
   const std::optional<Place>& at = witness.at;
-  ASSERT_TRUE(at && patch_at(surface, *at)) << where;
+  ASSERT_TRUE(at && surface.has(*at)) << where;
   const SurfacePoint point = evaluate(surface, *at);
   const Point3 placed = pose.apply(point.point);
   // Parameters are rounded to 2^-51; around many faces points move by more than parameters do.
@@ -38,15 +39,16 @@ struct Counts {
   std::size_t witnesses = 0, close = 0, inner = 0;
 };
 
-// One question by workspaces of its own, so that nothing is left of the one before.
-Collision ask(const SurfaceBvh& a, const SurfaceBvh& b, const std::array<Motion, 2>& poses,
-              CollideOptions options, const Run& run, WitnessKind kind) {
-  SurfaceWorkspace one(a), other(b);
+// One question with a workspace of its own, so that nothing is left of the one before.
+Collision ask(const Surface& a, const Surface& b, const std::array<Motion, 2>& poses, CollideOptions options,
+              Run run, WitnessKind kind) {
+  Workspace empty;
+  run.workspace = &empty;
   options.witness = kind;
-  return collide({a, one, poses[0]}, {b, other, poses[1]}, options, run);
+  return collide(a.at(poses[0]), b.at(poses[1]), options, run);
 }
 
-void expect_one_verdict(const SurfaceBvh& a, const SurfaceBvh& b, const std::array<Motion, 2>& poses,
+void expect_one_verdict(const Surface& a, const Surface& b, const std::array<Motion, 2>& poses,
                         const CollideOptions& options, const Run& run, const std::string& where,
                         Counts& counts) {
   const Collision exact = ask(a, b, poses, options, run, WitnessKind::exact),
@@ -80,18 +82,17 @@ void expect_one_verdict(const SurfaceBvh& a, const SurfaceBvh& b, const std::arr
   EXPECT_EQ(near.witness.has_value(), exact.witness.has_value()) << where;
   if (!near.witness || !exact.witness || near.contained) return;
   ++counts.witnesses;
-  counts.close += std::max((*near.witness)[0].error, (*near.witness)[1].error) < 1e-3 * a.surface().size();
+  counts.close += std::max((*near.witness)[0].error, (*near.witness)[1].error) < 1e-3 * a.size();
   for (std::size_t s = 0; s < 2; ++s) {
-    const LimitSurface& surface = (s == 0 ? a : b).surface();
+    const Surface& surface = s == 0 ? a : b;
     expect_near_limit(surface, poses[s], (*near.witness)[s], where + ", near");
     expect_near_limit(surface, poses[s], (*exact.witness)[s], where);
   }
   // The limit points that they stand for are no farther apart than the upper bound.
   if (near.verdict != Verdict::intersecting) {
-    const Point3 p = poses[0].apply(evaluate(a.surface(), *(*near.witness)[0].at).point),
-                 q = poses[1].apply(evaluate(b.surface(), *(*near.witness)[1].at).point);
-    EXPECT_LE(distance(p, q), near.distance.upper + 1e-10 * (a.surface().size() + b.surface().size()))
-        << where;
+    const Point3 p = poses[0].apply(evaluate(a, *(*near.witness)[0].at).point),
+                 q = poses[1].apply(evaluate(b, *(*near.witness)[1].at).point);
+    EXPECT_LE(distance(p, q), near.distance.upper + 1e-10 * (a.size() + b.size())) << where;
   }
 }
 
@@ -103,8 +104,8 @@ TEST(witness_kinds, leave_the_verdict_as_it_is) {
     for (std::size_t p = 0; p < s.surface.patch_count(); ++p) patches += s.surface.has_patch(PatchId(p));
     if (patches == 0) return;
     const BoundMethod method = random() % 4 == 0 ? BoundMethod::table : BoundMethod::rows;
-    const SurfaceBvh a(s.surface, {.method = method, .threads = 1}),
-        b(s.surface, {.tight = true, .threads = 1});
+    const Surface a = testing::public_surface(s.surface.mesh(), s.surface.options(), {.bounds = method}),
+                  b = testing::public_surface(s.surface.mesh(), s.surface.options(), {.tight = true});
     for (int trial = 0; trial < 5; ++trial) {
       const double size = s.surface.size(), far = size * std::array{0.05, 0.4, 1.0}[random() % 3];
       std::array<Motion, 2> poses;
@@ -140,9 +141,7 @@ TEST(witness_kinds, leave_the_verdict_about_solids_as_it_is) {
     const oracle::TaggedMesh shape = oracle::meshes::triangulated(oracle::meshes::cube());
     ControlMesh small = testing::control_mesh(shape);
     for (Point3& p : small.points) p = {0.2 * p.x, 0.2 * p.y, 0.2 * p.z};
-    const LimitSurface outer(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>()),
-        inner(small, {scheme}, std::make_shared<BoundsCache>());
-    const SurfaceBvh a(outer, {.threads = 1}), b(inner, {.threads = 1});
+    const Surface a(testing::control_mesh(shape), {.scheme = scheme}), b(small, {.scheme = scheme});
     for (int trial = 0; trial < 200; ++trial) {
       std::array<Motion, 2> poses;
       for (Motion& pose : poses)

@@ -1,7 +1,7 @@
 // The promise itself: no limit point outside its enclosures, on more than a million adversarial points,
 // against the twin's quadruple precision.
 
-#include <snug/query/bound.h>
+#include <snug/bound.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
@@ -11,6 +11,7 @@
 #include <testing/containment.h>
 #include <testing/disguises.h>
 #include <testing/patches.h>
+#include <testing/surfaces.h>
 
 #include <functional>
 #include <iostream>
@@ -95,24 +96,21 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
     for (const oracle::TwinMesh& plain : meshes) {
       oracle::TwinMesh twin = plain;
       for (oracle::Point& p : twin.points) p = disguise.change(p);
-      const LimitSurface surface = testing::surface_of(twin);
       std::vector<oracle::LimitSample> samples = oracle::sample_uniform(twin, 4);
       for (std::uint32_t corner = 0; corner < 3; ++corner) {
         const auto deep = oracle::sample_near_corner(twin, 0, corner, 50);
         samples.insert(samples.end(), deep.begin(), deep.end());
       }
       points += samples.size();
-      for (const unsigned level : {0u, 2u}) {
-        for (const Source& source : sources) {
-          std::map<std::pair<std::size_t, std::string>, PieceEnclosure> pieces;
-          BoundOptions options;
-          options.level = level;
-          bound(
-              surface, options,
-              [&](const PieceEnclosure& e) {
-                pieces[{e.patch.index(), e.path.text()}] = e;
-              },
-              {.threads = 1}, source.method);
+      for (const Source& source : sources) {
+        const Surface surface = testing::public_surface(twin, {.bounds = source.method});
+        for (const unsigned level : {0u, 2u}) {
+          std::map<std::pair<std::size_t, std::string>, PatchEnclosure> pieces;
+          bound(surface, {.level = level},
+                [&](const PatchEnclosure& e) {
+                  pieces[{e.patch.owner, e.piece}] = e;
+                },
+                {.threads = 1});
           for (const oracle::LimitSample& s : samples) {
             const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
             ASSERT_NE(it, pieces.end());

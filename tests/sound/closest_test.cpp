@@ -3,7 +3,7 @@
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_test --gtest_filter=closest.points_are_the_nearest
 
-#include <snug/query/closest.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>
@@ -79,7 +79,7 @@ TEST(closest, points_are_the_nearest) {
       options.absolute = pair.scaled(size * (choice == 2 ? 1e-3 : choice == 3 ? 1e-6 : 1e-9));
     const snug::Run run{.max_splits = choice == 5 ? 500 : 3000};
     const auto before = std::chrono::steady_clock::now();
-    const ClosestPoint answer = closest_point(pair.scratch(0), scaled, options, run);
+    const ClosestPoint answer = closest_point(pair.surface(0), scaled, options, run);
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
     seconds += took;
     if (took > slowest) slowest = took, slowest_trial = trial.number;
@@ -153,11 +153,11 @@ TEST(closest, many_in_threads_are_the_same_as_one_by_one) {
     options.relative = 1e-6;
     options.absolute = pair.scaled(1e-9 * pair.size());
     for (const int threads : {1, 3}) {
-      const std::vector<ClosestPoint> all = closest_point(pair.model(0), to, options, {.threads = threads});
+      const std::vector<ClosestPoint> all = closest_point(pair.surface(0), to, options, {.threads = threads});
       ASSERT_EQ(all.size(), to.size());
       for (std::size_t k = 0; k < to.size(); ++k) {
-        SurfaceWorkspace scratch(pair.model(0));
-        const ClosestPoint one = closest_point(scratch, to[k], options);
+        Workspace fresh;
+        const ClosestPoint one = closest_point(pair.surface(0), to[k], options, {.workspace = &fresh});
         EXPECT_EQ(all[k].distance.lower, one.distance.lower);
         EXPECT_EQ(all[k].distance.upper, one.distance.upper);
         EXPECT_EQ(all[k].point, one.point);

@@ -7,7 +7,8 @@
 // with trial N: with SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
 // SNUG_SHOW=1 names what stayed undecided.
 
-#include <snug/query/pair_queries.h>
+#include <snug/collide.h>
+#include <snug/search/surface_data.h>
 #include <snug/search/winding.h>
 
 #include <gtest/gtest.h>
@@ -167,18 +168,17 @@ class Checks {
 
   /// No answer depends on what was asked before, nor on a question that was interrupted.
   void check_same(const CollideOptions& options, const Run& effort, const Collision& answer) {
-    SurfaceWorkspace a(pair_->model(0)), b(pair_->model(1));
+    const PlacedSurface a = pair_->placed(0, trial_->a), b = pair_->placed(1, trial_->b);
+    Workspace empty;
     const std::atomic<bool> stop = true;
     const WorkMonitor monitor{{}, &stop};
     try {
-      (void)collide({pair_->model(0), a, pair_->scaled(trial_->a)},
-                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options,
-                    {.monitor = &monitor, .max_splits = effort.max_splits});
+      (void)collide(a, b, options,
+                    {.monitor = &monitor, .workspace = &empty, .max_splits = effort.max_splits});
     } catch (const Interrupted&) {
       ++interrupted_;
     }
-    const Collision fresh = collide({pair_->model(0), a, pair_->scaled(trial_->a)},
-                                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options, effort);
+    const Collision fresh = collide(a, b, options, {.workspace = &empty, .max_splits = effort.max_splits});
     expect(fresh.verdict == answer.verdict && fresh.distance.lower == answer.distance.lower &&
                fresh.distance.upper == answer.distance.upper && fresh.witness == answer.witness &&
                fresh.outcome == answer.outcome && fresh.stats.splits == answer.stats.splits,
@@ -318,30 +318,27 @@ TEST(contact, verdicts_and_bounds_are_true) {
 // A triangle of size 2^a around the origin, another of size 2^b that lies h above it: the distance is h,
 // whatever the sizes.
 TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
-  const auto library = std::make_shared<BoundsCache>();
   const auto surface = [&](int exponent, double height) {
     ControlMesh mesh;
     for (const auto& [x, y] : {std::pair{-1, -1}, std::pair{2, -1}, std::pair{-1, 2}})
       mesh.points.push_back({std::ldexp(x, exponent), std::ldexp(y, exponent), height});
     const VertexId corners[3] = {VertexId(0u), VertexId(1u), VertexId(2u)};
     mesh.add_face(corners);
-    return LimitSurface(std::move(mesh), {Scheme::loop, BoundaryRule::edge_and_corner}, library);
+    return Surface(std::move(mesh), {.scheme = Scheme::loop, .boundary = BoundaryRule::edge_and_corner});
   };
+  const Surface first = surface(0, 0);  // keeps the bounds that all of them share
   std::size_t apart = 0, near = 0, undecided = 0, turn = 0;
   for (const int a : {-1060, -600, -100, -20, 0, 20, 100, 600, 1020}) {
     for (const int b : {-1060, -600, -100, -20, 0, 20, 100, 600, 1020}) {
       for (const int c : {-1070, -1000, -500, -100, -30, 0, 30, 100, 500, 1000, 0x10000}) {
         const double h = c == 0x10000 ? 0 : std::ldexp(1.0, c);
         const bool by_placement = ++turn % 2 == 0;  // all pairs of choices, half of all combinations
-        const LimitSurface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
-        const SurfaceBvh model_a(low), model_b(high);
-        SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+        const Surface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
         const Motion place = Motion::translation({0, 0, by_placement ? h : 0});
         CollideOptions options = testing::verdict_only();
         for (const double tolerance : {0.0, h / 4, 2 * h, std::ldexp(1e-3, std::max(a, b))}) {
           options.tolerance = tolerance;
-          const Collision answer =
-              collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options, {.max_splits = 300});
+          const Collision answer = collide(low, high.at(place), options, {.max_splits = 300});
           const std::string what = "sizes 2^" + std::to_string(a) + ", 2^" + std::to_string(b) + ", h " +
                                    std::to_string(c) + ": " + name_of(answer.verdict);
           EXPECT_LE(answer.distance.lower, h) << what;
@@ -380,7 +377,8 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
     if (trial.family != "shells") continue;
     for (std::size_t side = 0; side < 2; ++side) {
       oracle::ContactSurface& twin = trial.pair->twin(side);
-      const LimitSurface& surface = trial.pair->model(side).surface();
+      const SurfaceBvh& model = trial.pair->surface(side).data()->bvh();
+      SurfaceWorkspace scratch(model);
       for (int k = 0; k < 8; ++k) {
         // Up to a hair from the surface, along a ray from the origin through a limit point.
         std::uniform_real_distribution<double> unit(-1, 1);
@@ -391,10 +389,10 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
         const bool is_inside = twin.misses(oracle::kUnmoved, p, {0, 0, 0}),
                    is_outside = !is_inside && twin.misses(oracle::kUnmoved, p, far);
         if (!is_inside && !is_outside) continue;
-        const PowerOfTwo scale = surface.scale();
+        const PowerOfTwo scale = model.surface().scale();
         const Point3 scaled{scale.apply(trial.pair->scaled(p[0])), scale.apply(trial.pair->scaled(p[1])),
                             scale.apply(trial.pair->scaled(p[2]))};
-        const std::optional<int> found = winding_number(trial.pair->scratch(side), scaled, 1e-15);
+        const std::optional<int> found = winding_number(scratch, scaled, 1e-15);
         undecided += !found && std::abs(t - 1) > 1e-5;
         inside += is_inside;
         outside += is_outside;

@@ -7,11 +7,13 @@
 // runs so many placements; SNUG_FIRST=N begins with placement N, with SNUG_PLACEMENTS=1 one that failed alone, and
 // SNUG_DUMP=FOLDER writes its meshes there.
 
-#include <snug/query/closest.h>
-#include <snug/query/contacts.h>
+#include <snug/contacts.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/limit_twin.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <support/point.h>
 #include <testing/counts.h>
@@ -42,8 +44,7 @@ class Checks {
  public:
   explicit Checks(GroundTrial& trial) : trial_(trial), size_(trial.size()) {
     for (std::size_t s = 0; s < 2; ++s) {
-      pose_[s] = trial.placed(s).pose;
-      own_[s] = std::make_unique<SurfaceWorkspace>(*side(s).model);
+      pose_[s] = trial.placed(s).pose();
       far_ = std::max({far_, size_, max_abs(pose_[s].offset())});
     }
   }
@@ -94,7 +95,7 @@ class Checks {
     return {at, pose_[s].apply(evaluate(*side(s).surface, at).point)};
   }
   [[nodiscard]] Sample random_sample(std::size_t s) {
-    const LimitSurface& surface = *side(s).surface;
+    const LimitSurface& surface = side(s).surface->data()->limit();
     while (true) {
       const PatchId p(trial_.random() % surface.patch_count());
       if (surface.has_patch(p))
@@ -103,7 +104,7 @@ class Checks {
   }
   // The nearest one on the other surface.
   [[nodiscard]] Sample opposite(std::size_t s, const Point3& to) {
-    const ClosestPoint found = closest_point(*own_[s], pose_[s].inverse().apply(to),
+    const ClosestPoint found = closest_point(*side(s).surface, pose_[s].inverse().apply(to),
                                              {.absolute = 1e-13 * size_}, {.max_splits = 3000});
     return sample(s, *found.at);
   }
@@ -212,7 +213,6 @@ class Checks {
   GroundTrial& trial_;
   double size_, far_ = 0;
   std::array<Motion, 2> pose_;
-  std::array<std::unique_ptr<SurfaceWorkspace>, 2> own_;
 };
 
 TEST(contacts, hold_for_every_scheme_tag_and_rule_with_each_other) {

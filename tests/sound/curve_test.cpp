@@ -1,5 +1,4 @@
-#include <snug/query/bound.h>
-#include <snug/surface/evaluate.h>
+#include <snug/curves.h>
 #include <snug/surface/unscale.h>
 #include <testing/curves.h>
 

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
 #include <snug/mesh/topology.h>
-#include <snug/query/closest.h>
 #include <snug/search/solid.h>
 #include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>

@@ -3,13 +3,12 @@
 //
 //   SNUG_DEFORMATIONS=2000 build/release/bin/tests/sound_test --gtest_filter='deforming_contact.*'
 
-#include <snug/query/pair_queries.h>
+#include <snug/time_of_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
 #include <testing/deformations.h>
-#include <testing/patches.h>
-#include <testing/twins.h>
+#include <testing/surfaces.h>
 
 #include <iostream>
 #include <string>
@@ -32,9 +31,9 @@ TEST(deforming_contact, no_points_of_loop_surfaces_meet_before) {
   std::mt19937_64 random(12);
   std::vector<oracle::TwinMesh> meshes = testing::assorted_meshes(6);
   std::erase_if(meshes, [](const oracle::TwinMesh& mesh) {
-    const LimitSurface surface = testing::surface_of(mesh);
-    for (std::size_t f = 0; f < surface.patch_count(); ++f) {
-      if (surface.has_patch(PatchId(f))) return false;
+    const Surface surface = testing::public_surface(mesh);
+    for (std::uint32_t f = 0; f < surface.owner_count(); ++f) {
+      if (surface.has({f, 0, 0, 0})) return false;
     }
     return true;
   });
@@ -58,14 +57,11 @@ TEST(deforming_contact, no_points_of_loop_surfaces_meet_before) {
       }
       return oracle::ContactSurface(mesh);
     };
-    const LimitSurface a = testing::surface_of(twin[0]), b = testing::surface_of(twin[1]);
-    const SurfaceBvh model_a(a), model_b(b);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Surface a = testing::public_surface(twin[0]), b = testing::public_surface(twin[1]);
     const double size = std::max(a.size(), b.size()),
                  tolerance = random() % 4 == 0 ? 1e-5 * size : 1e-3 * size;
-    const Trajectory of_a(pose[0]), of_b(pose[1]);
-    const TimeOfContact found = time_of_contact({model_a, scratch_a, of_a, end[0]},
-                                                {model_b, scratch_b, of_b, end[1]}, {.tolerance = tolerance});
+    const TimeOfContact found =
+        time_of_contact({a, end[0], pose[0]}, {b, end[1], pose[1]}, {.tolerance = tolerance});
     tally.add(found);
     const std::string what = "trial " + std::to_string(trial);
     const auto bounds_at = [&](double s) {

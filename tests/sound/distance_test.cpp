@@ -2,7 +2,7 @@
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_test --gtest_filter=distance.intervals_hold_the_truth
 
-#include <snug/query/pair_queries.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>
@@ -78,9 +78,9 @@ TEST(distance, intervals_hold_the_truth) {
       ADD_FAILURE() << claim << numbers << testing::describe(trial);
     };
     if (trial.number % 16 == 5) {  // no answer depends on what was asked before
-      SurfaceWorkspace a(pair.model(0)), b(pair.model(1));
-      const Distance fresh = distance({pair.model(0), a, pair.scaled(trial.a)},
-                                      {pair.model(1), b, pair.scaled(trial.b)}, options, run);
+      Workspace empty;
+      const Distance fresh = distance(pair.placed(0, trial.a), pair.placed(1, trial.b), options,
+                                      {.workspace = &empty, .max_splits = run.max_splits});
       expect(fresh.distance.lower == answer.distance.lower && fresh.distance.upper == answer.distance.upper &&
                  fresh.witness == answer.witness,
              "the same answer from fresh scratch memory", pair.back(fresh.distance.lower),

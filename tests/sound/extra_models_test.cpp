@@ -1,15 +1,15 @@
 // More meshes, for those who have them: SNUG_EXTRA_MODELS names a folder. Every OBJ and OFF file in it that
 // is accepted is bounded and compared with the twin.
 
-#include <snug/query/bound.h>
-#include <snug/query/pair_queries.h>
+#include <snug/bound.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/mesh.h>
+#include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <testing/containment.h>
-#include <testing/twins.h>
+#include <testing/surfaces.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -24,18 +24,15 @@ namespace {
 constexpr std::size_t max_faces = 8000;  // what the twin samples in a few seconds
 
 // Checks samples of every face against the union of its pieces; returns how many there were.
-std::size_t check(const LimitSurface& surface, const BoundOptions& options,
-                  const std::vector<oracle::LimitSample>& samples, const std::string& name,
-                  BoundMethod method = BoundMethod::rows) {
-  std::vector<std::vector<PieceEnclosure>> pieces(surface.face_count());
-  bound(
-      surface, options, [&](const PieceEnclosure& piece) { pieces[piece.patch.index()].push_back(piece); },
-      {}, method);
+std::size_t check(const Surface& surface, const BoundOptions& options,
+                  const std::vector<oracle::LimitSample>& samples, const std::string& name) {
+  std::vector<std::vector<PatchEnclosure>> pieces(surface.owner_count());
+  bound(surface, options, [&](const PatchEnclosure& piece) { pieces[piece.patch.owner].push_back(piece); });
   for (const oracle::LimitSample& s : samples) {
     const testing::Extended p{s.position[0], s.position[1], s.position[2]};
     const long double slack = 2.0L * s.error;
     bool in_offset = false, in_interval = false;
-    for (const PieceEnclosure& piece : pieces[s.face]) {
+    for (const PatchEnclosure& piece : pieces[s.face]) {
       in_offset = in_offset || testing::within_radius(p, piece.offset.base, piece.offset.radius + slack);
       in_interval = in_interval || testing::in_interval_triangle(p, piece.interval, slack);
       if (in_offset && in_interval) break;
@@ -57,18 +54,20 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
       const ControlMesh mesh = read_mesh(path);
       if (mesh.face_count() > max_faces) continue;
       SchemeOptions rules{natural_scheme(mesh), mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner)};
-      const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>());
+      const Surface surface = testing::public_surface(mesh, rules);
       // The twin knows plain Loop surfaces.
       const bool tagged =
           !mesh.tags.creases.empty() || !mesh.tags.corners.empty() || !mesh.tags.holes.empty();
-      if (rules.scheme != Scheme::loop || tagged || !surface.topology().is_manifold()) continue;
+      if (rules.scheme != Scheme::loop || tagged || !surface.data()->limit().topology().is_manifold())
+        continue;
       const auto samples =
           oracle::sample_uniform(testing::twin_mesh(mesh, rules.boundary), mesh.face_count() > 1500 ? 1 : 3);
       BoundOptions options;
       points += check(surface, options, samples, path);
       options.error = 0.01 * surface.size();
       points += check(surface, options, samples, path);
-      points += check(surface, options, samples, path, BoundMethod::table);
+      points +=
+          check(testing::public_surface(mesh, rules, {.bounds = BoundMethod::table}), options, samples, path);
       ++accepted;
     } catch (const InputError&) {
       ++refused;
@@ -84,11 +83,11 @@ TEST(extra_models, venus_needs_few_leaves) {
   const char* folder = std::getenv("SNUG_EXTRA_MODELS");
   const std::string path = std::string(folder ? folder : "") + "/venus.off";
   if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no venus.off in SNUG_EXTRA_MODELS";
-  const LimitSurface surface(read_mesh(path), {}, std::make_shared<BoundsCache>());
+  const Surface surface = load(path);
   for (const auto& [tolerance, most] : {std::pair{0.02, 1450u}, {0.01, 1700u}, {0.005, 3100u}}) {
     BoundOptions options;
     options.error = tolerance * surface.size();
-    EXPECT_LE(bound(surface, options, [](const PieceEnclosure&) {}).count, most) << tolerance;
+    EXPECT_LE(bound(surface, options, [](const PatchEnclosure&) {}).count, most) << tolerance;
   }
 }
 
@@ -98,16 +97,12 @@ TEST(extra_models, counter_examples_are_answered_right) {
   const std::string path = std::string(folder ? folder : "") + "/solid/";
   if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no folder solid in SNUG_EXTRA_MODELS";
   const auto ask = [&](const std::string& a, const std::string& b, Scheme scheme, BoundMethod method) {
-    const LimitSurface surface_a(read_mesh(a), {scheme}, std::make_shared<BoundsCache>()),
-        surface_b(read_mesh(b), {scheme}, std::make_shared<BoundsCache>());
-    SurfaceBvhOptions how;
-    how.method = method;
-    const SurfaceBvh model_a(surface_a, how), model_b(surface_b, how);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const SurfaceOptions how{.scheme = scheme, .bounds = method};
+    const Surface surface_a = load(a, how), surface_b = load(b, how);
     CollideOptions options = testing::verdict_only();
     options.solid = method == BoundMethod::rows;
-    const Collision found = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, options);
-    const Distance gap = distance({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, {});
+    const Collision found = collide(surface_a, surface_b, options);
+    const Distance gap = distance(surface_a, surface_b);
     EXPECT_TRUE(method == BoundMethod::rows || gap.distance.upper > 0);
     return found.verdict;
   };

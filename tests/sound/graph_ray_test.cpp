@@ -6,7 +6,7 @@
 //
 // asks so many rays; SNUG_FIRST=N begins with mesh N.
 
-#include <snug/query/ray.h>
+#include <snug/ray.h>
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -57,10 +57,8 @@ class GraphTrials {
   }
 
   void run(std::uint64_t rays) {
-    const LimitSurface surface(mesh(), {scheme_}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model(surface, {.threads = 1});
-    SurfaceWorkspace workspace(model);
-    for (std::uint64_t i = 0; i < rays && !::testing::Test::HasFailure(); ++i) ask(workspace, surface.size());
+    const Surface surface(mesh(), {.scheme = scheme_}, {.threads = 1});
+    for (std::uint64_t i = 0; i < rays && !::testing::Test::HasFailure(); ++i) ask(surface);
   }
 
  private:
@@ -138,7 +136,8 @@ class GraphTrials {
             oz - (q_[0] * ox * ox + q_[1] * ox * oy + q_[2] * oy * oy + q_[3] * ox + q_[4] * oy + added_)};
   }
 
-  void ask(SurfaceWorkspace& workspace, double size) {
+  void ask(const Surface& surface) {
+    const double size = surface.size();
     double x = coordinate(), y = coordinate();
     if (random_() % 4 == 0) y = random_() % 2 == 0 ? x : -x;
     const double z = q_[0] * x * x + q_[1] * x * y + q_[2] * y * y + q_[3] * x + q_[4] * y + added_.get_d();
@@ -189,7 +188,7 @@ class GraphTrials {
     if (ends || !well || (count == 0 && gap < 0.05)) return;
     RayOptions options{.query = random_() % 4 == 0 ? RayQuery::nearest : RayQuery::all};
     if (random_() % 4 == 0) options.absolute = size * std::array{1e-3, 1e-5, 1e-8}[random_() % 3];
-    check(snug::ray(workspace, {Point3{} + mapped(o), mapped(d), from, to}, options), f, count, options.query,
+    check(snug::ray(surface, {Point3{} + mapped(o), mapped(d), from, to}, options), f, count, options.query,
           options.absolute.value_or(1e-6 * size) / length(mapped(d)), [&] {
             std::ostringstream text;
             text.precision(17);

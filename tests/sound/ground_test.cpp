@@ -7,16 +7,16 @@
 // runs so many placements; progress goes to standard error. SNUG_FIRST=N begins with placement N: with
 // SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
 
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
 #include <support/error.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/surface/evaluate.h>
 #include <testing/counts.h>
 #include <testing/ground_trials.h>
+#include <testing/surfaces.h>
 #include <testing/tagged.h>
 
 #include <algorithm>
@@ -44,6 +44,11 @@ constexpr std::uint64_t of_each_row = 1;
 
 double between(const Point& p, const Point& q) { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
 Point point_of(const Point3& p) { return {p.x, p.y, p.z}; }
+
+Run with(Workspace& workspace, Run run) {
+  run.workspace = &workspace;
+  return run;
+}
 
 class Checks {
  public:
@@ -95,12 +100,12 @@ class Checks {
     std::uint64_t most = usual;
     for (std::size_t s = 0; s < 2; ++s)
       if (side(s).has_many())
-        most = std::min<std::uint64_t>(most, side(s).model->method() == BoundMethod::table ? 60 : 300);
+        most = std::min<std::uint64_t>(most, side(s).bounds() == BoundMethod::table ? 60 : 300);
     return {.max_splits = most};
   }
 
   [[nodiscard]] bool has_many_kinds(std::size_t s) const {
-    return side(s).has_many() && side(s).model->method() == BoundMethod::table && side(s).made.rules.chaikin;
+    return side(s).has_many() && side(s).bounds() == BoundMethod::table && side(s).made.rules.chaikin;
   }
 
   void expect(bool holds, const char* claim, double found = 0, double bound = 0) {
@@ -163,7 +168,7 @@ class Checks {
       double reached = near;
       if (side(s).has_many()) {
         const Scheme scheme = side(s).made.scheme;
-        reached = (scheme == Scheme::midedge ? 1 : snug::rules_of(scheme).primal ? 1e-7 : 1e-3) * size_;
+        reached = (scheme == Scheme::midedge ? 1 : !traits_of(scheme).dual ? 1e-7 : 1e-3) * size_;
       }
       ContactGoal goal;
       goal.threshold = near;
@@ -223,10 +228,9 @@ class Checks {
       expect_on_surfaces(*answer.witness);
     }
     if (trial_->number % 3 == 1) {
-      SurfaceWorkspace a(*side(0).model), b(*side(1).model);
-      for (const bool fresh : {true, false}) {
-        const Collision again = fresh ? collide(trial_->placed(0, a), trial_->placed(1, b), options, run)
-                                      : collide(trial_->placed(0), trial_->placed(1), options, run);
+      Workspace empty;
+      for (const Run& again_run : {with(empty, run), run}) {
+        const Collision again = collide(trial_->placed(0), trial_->placed(1), options, again_run);
         expect(again.verdict == answer.verdict && again.distance.lower == answer.distance.lower &&
                    again.distance.upper == answer.distance.upper && again.witness == answer.witness &&
                    again.stats.splits == answer.stats.splits,
@@ -274,8 +278,8 @@ class Checks {
     }
     expect_on_surfaces(answer.witness);
     if (trial_->number % 3 == 2) {
-      SurfaceWorkspace a(*side(0).model), b(*side(1).model);
-      const Distance again = distance(trial_->placed(0, a), trial_->placed(1, b), options, run);
+      Workspace empty;
+      const Distance again = distance(trial_->placed(0), trial_->placed(1), options, with(empty, run));
       expect(again.distance.lower == answer.distance.lower && again.distance.upper == answer.distance.upper &&
                  again.witness == answer.witness,
              "the same answer again", again.distance.lower, again.distance.upper);
@@ -310,7 +314,7 @@ class Checks {
     options.relative = choice == 0 ? 1e-9 : 1e-3;
     options.absolute = size_ * (choice == 1 ? 1e-4 : 1e-9);
     const Run run = budget(1000);
-    const ClosestPoint answer = closest_point(*side(s).scratch, {to[0], to[1], to[2]}, options, run);
+    const ClosestPoint answer = closest_point(*side(s).surface, {to[0], to[1], to[2]}, options, run);
     char text[240];
     std::snprintf(text, sizeof text,
                   "closest on %s to (%.17g %.17g %.17g): [%.17g, %.17g] owner %u corner %u at %.17g %.17g",
@@ -337,7 +341,7 @@ class Checks {
     counts_["twin left open"] += found.spent;
     // The twin goes down 46 levels, which at large faces of a dual scheme are still wide, most of all around
     // their middles.
-    const bool primal = snug::rules_of(side(s).made.scheme).primal, many = side(s).has_many();
+    const bool primal = !traits_of(side(s).made.scheme).dual, many = side(s).has_many();
     if (!primal && many && answer.at->u == 1 && answer.at->v == 1) {
       ++counts_["closest: in the middle of a large face"];
       return;
@@ -348,8 +352,9 @@ class Checks {
     expect(between(same, point) <= 2 * answer.error + (by_twin ? 1e-9 : 1e-3) * size_,
            "owner, u and v are those of the point", between(same, point), answer.error);
     if (trial_->number % 3 == 0) {
-      SurfaceWorkspace fresh(*side(s).model);
-      const ClosestPoint again = closest_point(fresh, {to[0], to[1], to[2]}, options, run);
+      Workspace empty;
+      const ClosestPoint again =
+          closest_point(*side(s).surface, {to[0], to[1], to[2]}, options, with(empty, run));
       expect(again.distance.lower == answer.distance.lower && again.distance.upper == answer.distance.upper &&
                  again.point == answer.point,
              "the same answer again", again.distance.lower, again.distance.upper);
@@ -415,8 +420,7 @@ class Checks {
 
 // Where a patch's kind once left out what its surface depends on.
 void expect_limit_points(const oracle::TaggedMesh& mesh, const oracle::Rules& rules) {
-  const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
-                             std::make_shared<BoundsCache>());
+  const Surface surface = testing::public_surface(testing::control_mesh(mesh), testing::options_of(rules));
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(mesh, rules, 3);
   EXPECT_FALSE(samples.empty());
   for (const oracle::FaceSample& s : samples) {

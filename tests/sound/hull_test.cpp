@@ -2,13 +2,14 @@
 //
 //   SNUG_PLACEMENTS=2000 build/release/bin/tests/sound_test --gtest_filter='hulls.*'
 
-#include <snug/query/hull.h>
+#include <snug/hull.h>
 
 #include <gtest/gtest.h>
 #include <testing/counts.h>
 #include <testing/hulls.h>
 #include <testing/scheme_surfaces.h>
 #include <testing/solid_cases.h>
+#include <testing/surfaces.h>
 
 #include <cmath>
 #include <iostream>
@@ -19,6 +20,7 @@ namespace snug::hull_test {
 namespace {
 
 using oracle::TaggedMesh;
+using testing::both;
 using testing::HullCounts;
 
 // Results for the surfaces.
@@ -37,15 +39,12 @@ struct Outcomes {
 };
 
 void check(const TaggedMesh& mesh, const oracle::WindingScheme& scheme, const SchemeOptions& options,
-           HullOptions how, const std::shared_ptr<BoundsCache>& library, const std::string& name,
-           Outcomes& outcomes) {
-  const auto* const rules = std::get_if<oracle::Rules>(&scheme);
-  std::optional<LimitSurface> surface;
+           HullOptions how, const std::string& name, Outcomes& outcomes) {
   Hulls found;
   try {
-    surface.emplace(testing::control_mesh(mesh, rules ? *rules : oracle::Rules{}), options, library);
-    how.error = *how.error * surface->size();
-    found = hull(SurfaceBvh(*surface), how, {.max_splits = 15'000});
+    const Surface surface = testing::public_surface(testing::control_mesh(mesh), options);
+    how.error = *how.error * surface.size();
+    found = hull(surface, how, {.max_splits = 15'000});
   } catch (const InputError& error) {
     EXPECT_TRUE(error.problem() == InputProblem::refused || error.problem() == InputProblem::value)
         << name << ": " << error.what();
@@ -64,7 +63,6 @@ void check(const TaggedMesh& mesh, const oracle::WindingScheme& scheme, const Sc
 // Of every scheme, smooth, creased and with corners; one or several components, some inside out.
 TEST(hulls, of_random_solids_sandwich_them) {
   Outcomes outcomes;
-  const auto library = std::make_shared<BoundsCache>();
   const std::uint64_t solids = testing::number_of("SNUG_PLACEMENTS", 20);
   for (std::uint64_t number = 0; number < solids && !HasFailure(); ++number) {
     testing::SolidCase c = testing::solid_case(number);
@@ -74,7 +72,7 @@ TEST(hulls, of_random_solids_sandwich_them) {
     }
     HullOptions how{.error = std::array{0.08, 0.03, 0.01}[random() % 3]};
     how.single_precision = random() % 4 == 0;
-    check(c.mesh, c.scheme, c.options, how, library, c.name, outcomes);
+    check(c.mesh, c.scheme, c.options, how, c.name, outcomes);
   }
   outcomes.print("solids");
   EXPECT_GT(outcomes.verified, solids / 3);
@@ -84,12 +82,11 @@ TEST(hulls, of_random_solids_sandwich_them) {
 TEST(hulls, of_surfaces_with_every_tag_sandwich_them) {
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     Outcomes outcomes;
-    const auto library = std::make_shared<BoundsCache>();
     std::size_t number = 0;
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 77)) {
       if (HasFailure()) return;
       if (number++ % 5 > 1) continue;  // plain and tagged, with each boundary rule, by turns
-      check(c.mesh, c.rules, testing::options_of(c.rules), {.error = number % 2 == 1 ? 0.04 : 0.015}, library,
+      check(c.mesh, c.rules, testing::options_of(c.rules), {.error = number % 2 == 1 ? 0.04 : 0.015},
             c.name + ", " + testing::text_of(c.rules), outcomes);
     }
     outcomes.print(scheme == oracle::PrimalScheme::loop ? "loop" : "catmark");
@@ -117,39 +114,12 @@ TaggedMesh bipyramid(std::uint32_t n) {
 TEST(hulls, of_poles_of_many_narrow_faces_sandwich_them) {
   const TaggedMesh mesh = bipyramid(256);
   const oracle::Rules rules{.scheme = oracle::PrimalScheme::loop};
-  const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
-                             std::make_shared<BoundsCache>());
-  const Hulls found = hull(SurfaceBvh(surface), {.error = 0.02, .inner = false});
+  const Surface surface = testing::public_surface(testing::control_mesh(mesh), testing::options_of(rules));
+  const Hulls found = hull(surface, {.error = 0.02, .inner = false});
   ASSERT_EQ(found.outcome, Outcome::complete);
   EXPECT_LE(found.outer->triangles.size(), 200'000u);
   HullCounts counts;
   testing::expect_sandwich(mesh, rules, found, 0.02, 3, "poles", counts);
-}
-
-TaggedMesh moved(TaggedMesh mesh, const oracle::Point& by) {
-  for (oracle::Point& p : mesh.points) {
-    for (std::size_t a = 0; a < 3; ++a) p[a] += by[a];
-  }
-  return mesh;
-}
-
-TaggedMesh both(TaggedMesh mesh, const TaggedMesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.points.size());
-  mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
-  for (auto polygon : other.polygons) {
-    for (std::uint32_t& v : polygon) v += first;
-    mesh.polygons.push_back(polygon);
-  }
-  for (auto crease : other.creases) {
-    crease.a += first;
-    crease.b += first;
-    mesh.creases.push_back(crease);
-  }
-  for (auto corner : other.corners) {
-    corner.vertex += first;
-    mesh.corners.push_back(corner);
-  }
-  return mesh;
 }
 
 // Two parts of each pair of kinds, from far apart to through each other: usually at one of the distances, each kind at all.
@@ -187,7 +157,6 @@ TEST(hulls, of_parts_beside_each_other_sandwich_them) {
                       of_each = std::min<std::uint64_t>(testing::number_of("SNUG_PLACEMENTS", pairs) / pairs,
                                                         distances.size());
   Outcomes outcomes;
-  const auto library = std::make_shared<BoundsCache>();
   std::mt19937_64 random(5);
   std::size_t next = 0;
   for (const auto& [name_a, a] : kinds) {
@@ -201,8 +170,8 @@ TEST(hulls, of_parts_beside_each_other_sandwich_them) {
         oracle::Point by{0.1 * testing::unit(random), 0.1 * testing::unit(random),
                          0.1 * testing::unit(random)};
         by[axis] = high - low + apart;
-        check(both(a, moved(b, by)), oracle::Rules{}, testing::options_of(oracle::Rules{}), {.error = 0.02},
-              library, name_a + " beside " + name_b + " at " + std::to_string(apart), outcomes);
+        check(both(a, testing::moved(b, 1, by)), oracle::Rules{}, testing::options_of(oracle::Rules{}),
+              {.error = 0.02}, name_a + " beside " + name_b + " at " + std::to_string(apart), outcomes);
         if (HasFailure()) return;
       }
     }

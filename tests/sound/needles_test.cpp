@@ -5,11 +5,11 @@
 //
 // runs 4,000 of each; a placement takes some 10 ms.
 
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <testing/counts.h>
+#include <testing/six_sheets.h>
 #include <testing/tagged.h>
 
 #include <array>
@@ -94,24 +94,15 @@ ControlMesh grid(const Lattice& lattice, Scheme scheme, std::int64_t origin, std
   return mesh;
 }
 
-struct Side {
-  LimitSurface surface;
-  SurfaceBvh model;
-  SurfaceWorkspace scratch;
-  Side(ControlMesh mesh, Scheme scheme, const std::shared_ptr<BoundsCache>& library,
-       const SurfaceBvhOptions& options)
-      : surface(std::move(mesh), {scheme}, library), model(surface, options), scratch(model) {}
-};
-
 struct Setting {
-  Scheme scheme;
-  SurfaceBvhOptions options;
+  SurfaceOptions options;
   Motion motion;  // of whole numbers
   Lattice lattice;
   std::string text;
 
   Setting(std::mt19937_64& random, std::size_t trial, const std::vector<Scheme>& schemes)
-      : scheme(schemes[random() % schemes.size()]), lattice(random, std::int64_t{1} << (2 + random() % 24)) {
+      : options{.scheme = schemes[random() % schemes.size()]},
+        lattice(random, std::int64_t{1} << (2 + random() % 24)) {
     // Half of them so thin, and layers so near to each other, that they are a hair beside the rounding of
     // base triangles.
     for (int attempt = 0; trial % 2 == 0 && attempt < 40; ++attempt) {
@@ -121,10 +112,7 @@ struct Setting {
       if (lattice.layer() < 64 * hair && lattice.layer() > hair / 64) break;
     }
     options.tight = random() % 3 == 0;
-    if (random() % 2 == 0) options.min_lazy = 0;
-    options.part_level = 1 + static_cast<unsigned>(random() % 2);
-    options.threads = 1;
-    if (random() % 3 != 0) options.method = BoundMethod::table;
+    if (random() % 3 != 0) options.bounds = BoundMethod::table;
     const auto whole = [&] {
       return static_cast<double>(static_cast<std::int64_t>(random() % 2'000'001) - 1'000'000);
     };
@@ -133,8 +121,8 @@ struct Setting {
       motion = Motion::rotation_degrees(axes[random() % 3], 90.0 * static_cast<double>(random() % 4));
       motion = motion.with_offset({whole(), whole(), whole()});
     }
-    text = "trial " + std::to_string(trial) + ", " + name_of(scheme) +
-           (options.method == BoundMethod::table ? ", tables" : ", rows") + (options.tight ? ", tight" : "") +
+    text = "trial " + std::to_string(trial) + ", " + name_of(*options.scheme) +
+           (options.bounds == BoundMethod::table ? ", tables" : ", rows") + (options.tight ? ", tight" : "") +
            ", layer " + std::to_string(lattice.layer());
   }
 };
@@ -142,7 +130,7 @@ struct Setting {
 // One surface lies in layers 0 and below, the other in 1 and above: they are at least a layer apart.
 TEST(needles, in_layers_apart_are_never_called_intersecting) {
   std::mt19937_64 random(71);
-  const auto library = std::make_shared<BoundsCache>();
+  const Surface first(testing::six_sheets(1));  // keeps the bounds that all of them share
   std::size_t separated = 0;
   const std::size_t count = trial_count(300);
   for (std::size_t trial = 0; trial < count; ++trial) {
@@ -157,12 +145,13 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
     const std::int64_t shift = static_cast<std::int64_t>(random() % 3);
     // Half of them small over the middle of the other one.
     const std::int64_t step = random() % 2 ? 1 : 16;
-    Side a(grid(here.lattice, here.scheme, step == 1 ? 0 : -2 * step, step, 4,
-                [&](auto i, auto j) { return -some(i, j); }),
-           here.scheme, library, here.options);
-    Side b(grid(here.lattice, here.scheme, shift, 1, 4, [&](auto i, auto j) { return 1 + some(i, j); }),
-           here.scheme, library, here.options);
-    const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
+    const Surface a(grid(here.lattice, *here.options.scheme, step == 1 ? 0 : -2 * step, step, 4,
+                         [&](auto i, auto j) { return -some(i, j); }),
+                    here.options),
+        b(grid(here.lattice, *here.options.scheme, shift, 1, 4,
+               [&](auto i, auto j) { return 1 + some(i, j); }),
+          here.options);
+    const PlacedSurface at_a = a.at(here.motion), at_b = b.at(here.motion);
     const double layer = here.lattice.layer() * (1 - 1e-12);
     CollideOptions options = testing::verdict_only();
     options.prove_contact = true;
@@ -183,7 +172,7 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
     ASSERT_LE(found.distance.lower, found.distance.upper) << here.text;
     ASSERT_GE(found.distance.upper, layer) << here.text;
     // From a vertex of A, which is no nearer than a layer to B.
-    const ClosestPoint closest = closest_point(b.scratch, a.surface.mesh().points[random() % 25],
+    const ClosestPoint closest = closest_point(b, a.mesh().points[random() % 25],
                                                {.absolute = {}, .relative = 1e-3}, {.max_splits = 2000});
     ASSERT_GE(closest.distance.upper, layer) << here.text;
     ASSERT_LE(closest.distance.lower, closest.distance.upper) << here.text;
@@ -195,23 +184,23 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
 // above it.
 TEST(needles, through_each_other_are_never_called_apart) {
   std::mt19937_64 random(72);
-  const auto library = std::make_shared<BoundsCache>();
+  const Surface first(testing::six_sheets(1));  // keeps the bounds that all of them share
   std::size_t intersecting = 0;
   const std::size_t count = trial_count(300);
   for (std::size_t trial = 0; trial < count; ++trial) {
     const Setting here(random, trial, {Scheme::loop, Scheme::catmark});
     const std::int64_t deep = std::int64_t{1} << random() % 12;
-    Side a(grid(here.lattice, here.scheme, -2, 2, 4, [](auto, auto) { return 0; }), here.scheme, library,
-           here.options);
+    const Surface a(grid(here.lattice, *here.options.scheme, -2, 2, 4, [](auto, auto) { return 0; }),
+                    here.options);
     // Two of its corners belong to one face each: they are points of the limit surface.
-    Side b(grid(here.lattice, here.scheme, 0, 1, 4,
-                [&](std::uint32_t i, std::uint32_t j) {
-                  return i == 4 && j == 0   ? -deep
-                         : i == 0 && j == 4 ? deep
-                                            : static_cast<std::int64_t>(random() % 3) - 1;
-                }),
-           here.scheme, library, here.options);
-    const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
+    const Surface b(grid(here.lattice, *here.options.scheme, 0, 1, 4,
+                         [&](std::uint32_t i, std::uint32_t j) {
+                           return i == 4 && j == 0   ? -deep
+                                  : i == 0 && j == 4 ? deep
+                                                     : static_cast<std::int64_t>(random() % 3) - 1;
+                         }),
+                    here.options);
+    const PlacedSurface at_a = a.at(here.motion), at_b = b.at(here.motion);
     CollideOptions options = testing::verdict_only();
     const Collision collision = collide(at_a, at_b, options, {.max_splits = 2000});
     ASSERT_NE(collision.verdict, Verdict::separated) << here.text;
@@ -222,8 +211,8 @@ TEST(needles, through_each_other_are_never_called_apart) {
     ASSERT_EQ(distance(at_a, at_b, how, {.max_splits = 2000}).distance.lower, 0) << here.text;
     // Corners of B, which are limit points of it: their distance is 0.
     const std::size_t corner = random() % 2 ? 4 : 20;
-    const ClosestPoint at_corner = closest_point(b.scratch, b.surface.mesh().points[corner],
-                                                 {.absolute = {}, .relative = 1e-3}, {.max_splits = 2000});
+    const ClosestPoint at_corner =
+        closest_point(b, b.mesh().points[corner], {.absolute = {}, .relative = 1e-3}, {.max_splits = 2000});
     ASSERT_EQ(at_corner.distance.lower, 0) << here.text;
   }
   EXPECT_GT(intersecting, count / 25);

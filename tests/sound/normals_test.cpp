@@ -1,14 +1,15 @@
 // Cones of normals contain the normals of refined meshes, of rings around extraordinary corners, and those that
 // evaluation gives; and they are not much wider.
 
-#include <snug/query/bound.h>
+#include <snug/bound.h>
 
 #include <gtest/gtest.h>
 #include <oracle/normal_twin.h>
 #include <snug/patch/evaluate.h>
-#include <snug/shape/normal_cone.h>
+#include <snug/search/surface_data.h>
 #include <testing/counts.h>
 #include <testing/scheme_surfaces.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <array>
@@ -88,16 +89,16 @@ oracle::TaggedMesh fan(std::uint32_t n, bool triangles, Centre centre, double am
 }
 
 struct Cones {
-  std::vector<PieceEnclosure> pieces;
+  std::vector<PatchEnclosure> pieces;
   std::size_t found = 0;
 };
-Cones cones_of(const LimitSurface& surface, unsigned level) {
+Cones cones_of(const Surface& surface, unsigned level) {
   Cones cones;
   BoundOptions options;
   options.level = level;
   options.normals = true;
   bound(surface, options,
-        [&](const PieceEnclosure& piece) {
+        [&](const PatchEnclosure& piece) {
           cones.pieces.push_back(piece);
           cones.found += piece.normals ? 1 : 0;
         },
@@ -109,6 +110,12 @@ Cones cones_of(const LimitSurface& surface, unsigned level) {
 TriangleParameter in_patch(bool triangular, std::uint32_t part, double u, double v) {
   if (triangular) return {u, v};
   return part % 2 == 0 ? TriangleParameter{u - v, v} : TriangleParameter{v - u, 1 - v};
+}
+
+PiecePath path_of(const std::string& piece) {
+  PiecePath path;
+  for (const char digit : piece) path = path.child(static_cast<unsigned>(digit - '0'));
+  return path;
 }
 
 // Is a parameter of a patch in a piece of it? Exact: all are dyadic.
@@ -127,26 +134,26 @@ struct Counts {
 };
 
 // All samples lie in the cones of the pieces that they are in.
-void expect_contained(const LimitSurface& surface, const Cones& cones,
+void expect_contained(const Surface& surface, const Cones& cones,
                       const std::vector<oracle::NormalSample>& samples, const std::string& name,
                       Counts& counts) {
-  const bool triangular = surface.rules().triangular();
-  for (const PieceEnclosure& piece : cones.pieces) {
+  const bool triangular = surface.traits().triangular;
+  for (const PatchEnclosure& piece : cones.pieces) {
     ++counts.pieces;
     if (!piece.normals) continue;
     ++counts.cones;
-    const PatchPlace place = surface.place(piece.patch);
+    const PatchPlace place = piece.patch;
     double widest = 0;
     for (const oracle::NormalSample& sample : samples) {
       if (sample.face != place.owner || (!triangular && sample.part != place.part / 2)) continue;
-      if (!in_piece(piece.path, in_patch(triangular, place.part, sample.u, sample.v))) continue;
+      if (!in_piece(path_of(piece.piece), in_patch(triangular, place.part, sample.u, sample.v))) continue;
       ++counts.samples;
       const Vector3 normal{sample.normal[0], sample.normal[1], sample.normal[2]};
       const double angle = angle_between(piece.normals->axis, normal);
       widest = std::max(widest, angle);
       EXPECT_LE(angle, piece.normals->angle + sample.error)
-          << name << ", face " << place.owner << " part " << place.part << " piece " << piece.path.text()
-          << " at " << sample.u << " " << sample.v;
+          << name << ", face " << place.owner << " part " << place.part << " piece " << piece.piece << " at "
+          << sample.u << " " << sample.v;
     }
     if (widest > 0) counts.used.push_back(widest / piece.normals->angle);
     if (::testing::Test::HasFailure()) return;
@@ -178,8 +185,8 @@ TEST(normals, cones_contain_normals_of_refined_meshes_and_rings) {
             const oracle::TaggedMesh mesh = fan(n, loop, centre, amount, random);
             oracle::Rules rules;
             rules.scheme = scheme;
-            const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
-                                       std::make_shared<BoundsCache>());
+            const Surface surface =
+                testing::public_surface(testing::control_mesh(mesh), testing::options_of(rules));
             auto samples = oracle::sample_normals(mesh, rules, 3);
             const auto near = oracle::sample_normals_near(mesh, rules, 0, 25);
             EXPECT_GE(near.size(), 50U);
@@ -211,17 +218,16 @@ TEST(normals, cones_contain_normals_of_refined_dual_meshes) {
       for (const double amount : {0.0, 0.1, 0.4}) {
         const oracle::TaggedMesh mesh =
             meshes::shaken(n % 2 == 0 ? meshes::prism(n) : meshes::pyramid(n), amount, random);
-        const LimitSurface surface(
+        const Surface surface(
             testing::control_mesh(mesh),
-            {scheme == oracle::DualScheme::doo_sabin ? Scheme::doo_sabin : Scheme::midedge},
-            std::make_shared<BoundsCache>());
+            {.scheme = scheme == oracle::DualScheme::doo_sabin ? Scheme::doo_sabin : Scheme::midedge});
         const Cones found = cones_of(surface, 1);
         cones += found.found;
         for (const oracle::DualNormal& sample : oracle::sample_dual_normals(mesh, scheme, 4)) {
           // In a cone of one of its owners, unless one of their pieces has none.
           bool inside = false;
-          for (const PieceEnclosure& piece : found.pieces) {
-            const std::uint32_t owner = surface.place(piece.patch).owner;
+          for (const PatchEnclosure& piece : found.pieces) {
+            const std::uint32_t owner = piece.patch.owner;
             if (std::find(sample.owners.begin(), sample.owners.end(), owner) == sample.owners.end()) continue;
             const Vector3 normal{sample.normal[0], sample.normal[1], sample.normal[2]};
             inside =
@@ -245,11 +251,13 @@ TEST(normals, cones_contain_what_evaluation_gives) {
   std::mt19937_64 random(3);
   std::size_t samples = 0, cones = 0;
   testing::for_each_surface(4, [&](const testing::NamedSurface& named) {
-    const Cones found = cones_of(named.surface, 1);
-    for (const PieceEnclosure& piece : found.pieces) {
+    const Surface surface = testing::public_surface(named.surface.mesh(), named.surface.options());
+    const LimitSurface& limit = surface.data()->limit();
+    const Cones found = cones_of(surface, 1);
+    for (const PatchEnclosure& piece : found.pieces) {
       if (!piece.normals) continue;
       ++cones;
-      const Patch patch = named.surface.patch(piece.patch);
+      const Patch patch = limit.patch(PatchId(limit.patches_of(piece.patch.owner).begin + piece.patch.part));
       for (int i = 0; i < 24; ++i) {
         TriangleParameter at = testing::random_parameter(random);
         if (i % 2 == 0) {
@@ -259,7 +267,7 @@ TEST(normals, cones_contain_what_evaluation_gives) {
           if (turns == 1) at = {1 - at.u - at.v, at.u};
           if (turns == 2) at = {at.v, 1 - at.u - at.v};
         }
-        const LimitFrame frame = limit_frame(patch, to_face(piece.path, at));
+        const LimitFrame frame = limit_frame(patch, to_face(path_of(piece.piece), at));
         EXPECT_TRUE(frame.normal || !frame.differentiable) << named.name;
         if (!frame.normal || !frame.normal_error) continue;
         ++samples;

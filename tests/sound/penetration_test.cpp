@@ -2,15 +2,13 @@
 // translations that an independent search proves to separate them, which none may be shorter than the lower
 // bound.
 
-#include <snug/query/pair_queries.h>
+#include <snug/collide.h>
+#include <snug/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
-#include <snug/patch/evaluate.h>
-#include <snug/query/nesting.h>
-#include <snug/surface/evaluate.h>
-#include <testing/patches.h>
 #include <testing/placements.h>
+#include <testing/surfaces.h>
 #include <testing/tagged.h>
 
 #include <cmath>
@@ -22,9 +20,9 @@ namespace {
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 // Limit points all over a surface.
-std::vector<Point3> samples_of(const LimitSurface& surface, unsigned steps) {
+std::vector<Point3> samples_of(const Surface& surface, unsigned steps) {
   std::vector<Point3> points;
-  for (std::uint32_t f = 0; f < surface.face_count(); ++f) {
+  for (std::uint32_t f = 0; f < surface.owner_count(); ++f) {
     for (unsigned i = 0; i <= steps; ++i) {
       for (unsigned j = 0; i + j <= steps; ++j) {
         points.push_back(
@@ -56,12 +54,10 @@ TEST(penetration, of_convex_solids_is_the_least_overlap_of_their_supports) {
   double worst_upper = 0, worst_lower = INFINITY;
   int deep = 0;
   for (int trial = 0; trial < 24; ++trial) {
-    const LimitSurface a = testing::surface_of(egg(random)), b = testing::surface_of(egg(random));
-    const SurfaceBvh model_a(a), model_b(b);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Surface a = testing::public_surface(egg(random)), b = testing::public_surface(egg(random));
     const Motion place_a = testing::random_placement(random, testing::random_vector(random, 0.5)),
                  place_b = testing::random_placement(random, testing::random_vector(random, 0.5));
-    const Penetration found = penetration({model_a, scratch_a, place_a}, {model_b, scratch_b, place_b});
+    const Penetration found = penetration(a.at(place_a), b.at(place_b));
     const std::vector<Point3> on_a = samples_of(a, 12), on_b = samples_of(b, 12);
     double least = INFINITY;
     Vector3 best{1, 0, 0};
@@ -108,14 +104,12 @@ TEST(penetration, bounds_hold_for_solids_with_dents) {
   std::mt19937_64 random(92);
   int deep = 0;
   for (int trial = 0; trial < 10; ++trial) {
-    const LimitSurface a = testing::surface_of(
-                           oracle::meshes::disturbed(oracle::meshes::icosahedron(), 6, 0.4, random)),
-                       b = testing::surface_of(
-                           oracle::meshes::disturbed(oracle::meshes::octahedron(), 6, 0.4, random));
-    const SurfaceBvh model_a(a), model_b(b);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Surface a = testing::public_surface(
+                      oracle::meshes::disturbed(oracle::meshes::icosahedron(), 6, 0.4, random)),
+                  b = testing::public_surface(
+                      oracle::meshes::disturbed(oracle::meshes::octahedron(), 6, 0.4, random));
     const Motion place_b = testing::random_placement(random, testing::random_vector(random, 0.7));
-    const Penetration found = penetration({model_a, scratch_a, {}}, {model_b, scratch_b, place_b});
+    const Penetration found = penetration(a, b.at(place_b));
     EXPECT_LE(found.depth.lower, found.depth.upper);
     if (found.depth.upper == 0) continue;
     ++deep;
@@ -133,7 +127,7 @@ TEST(penetration, bounds_hold_for_solids_with_dents) {
       const Vector3 d = (found.depth.lower * unit(random) / length(v)) * v;
       if (!apart(d)) continue;
       const Motion moved = place_b.with_offset(place_b.offset() + d);
-      EXPECT_TRUE(nesting({model_a, scratch_a, {}}, {model_b, scratch_b, moved}).inner) << trial;
+      EXPECT_TRUE(collide(a, b.at(moved), {.tolerance = 0, .solid = true}).contained) << trial;
     }
   }
   EXPECT_GE(deep, 5);
@@ -174,16 +168,12 @@ ControlMesh frame() {
 TEST(penetration, finds_ways_into_holes) {
   std::mt19937_64 random(94);
   ControlMesh cube = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube()));
-  const auto library = std::make_shared<BoundsCache>();
-  const LimitSurface ring(frame(), {Scheme::flat}, library), box(cube, {Scheme::flat}, library);
-  const SurfaceBvh model_a(ring), model_b(box);
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  const Surface ring(frame()), box(cube, {.scheme = Scheme::flat});
   int slanted = 0, reached = 0;
   for (int trial = 0; trial < 40; ++trial) {
     const double x = 0.05 + 0.9 * unit(random), y = 0.05 + 0.9 * unit(random);
     const double into_hole = std::hypot(1 - x, 1 - y), depth = std::min(1.0, into_hole);
-    const Penetration found =
-        penetration({model_a, scratch_a, {}}, {model_b, scratch_b, Motion::translation({x, y, 0})}, {});
+    const Penetration found = penetration(ring, box.at(Motion::translation({x, y, 0})));
     ASSERT_LE(found.depth.lower, depth) << trial;
     ASSERT_GE(found.depth.upper, depth * (1 - 1e-12)) << trial;
     EXPECT_LE(found.depth.upper, 1.02 * depth) << trial << ' ' << x << ' ' << y;
@@ -195,16 +185,14 @@ TEST(penetration, finds_ways_into_holes) {
 }
 
 TEST(penetration, of_separated_solids_is_zero_and_open_surfaces_are_refused) {
-  const LimitSurface ball = testing::surface_of(oracle::meshes::icosahedron()),
-                     sheet = testing::surface_of(oracle::meshes::grid(2, 2));
-  const SurfaceBvh model(ball), same(ball), open(sheet);
-  SurfaceWorkspace scratch(model), other(same), flat(open);
-  const Penetration none = penetration({model, scratch, {}}, {same, other, Motion::translation({5, 0, 0})});
+  const Surface ball = testing::public_surface(oracle::meshes::icosahedron()),
+                sheet = testing::public_surface(oracle::meshes::grid(2, 2));
+  const Penetration none = penetration(ball, ball.at(Motion::translation({5, 0, 0})));
   EXPECT_EQ(none.depth.upper, 0);
   EXPECT_EQ(none.outcome, Outcome::complete);
-  EXPECT_THROW(static_cast<void>(penetration({model, scratch, {}}, {open, flat, {}})), InputError);
+  EXPECT_THROW(static_cast<void>(penetration(ball, sheet)), InputError);
   // One in the middle of itself: as deep as it is thick.
-  const Penetration whole = penetration({model, scratch, {}}, {same, other, {}});
+  const Penetration whole = penetration(ball, ball);
   EXPECT_GT(whole.depth.lower, 1.2);
   EXPECT_LT(whole.depth.upper, 2);
 }

@@ -5,17 +5,20 @@
 //
 // asks so many rays; SNUG_FIRST=N begins with case N.
 
-#include <snug/query/closest.h>
-#include <snug/query/ray.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
+#include <snug/ray.h>
 
 #include <gtest/gtest.h>
 #include <oracle/ray_twin.h>
 #include <oracle/tagged_shapes.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <support/error.h>
 #include <testing/disguises.h>
 #include <testing/places.h>
 #include <testing/solid_cases.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <chrono>
@@ -258,7 +261,7 @@ struct Counted {
 // A ray that lies in a flat face spends all of it.
 constexpr std::uint64_t usual_budget = 2000;
 
-void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& ray, const RayOptions& options,
+void check_flat(const Surface& surface, const FlatFaces& twin, const Ray& ray, const RayOptions& options,
                 const Run& run, const std::string& name, Counted& counted) {
   const auto where = [&] { return name + ": " + text_of(ray, options.query); };
   std::vector<ExactHit> truth = twin.hits(plain(ray.origin), plain(ray.direction));
@@ -268,7 +271,7 @@ void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& r
   });
   for (const ExactHit& hit : truth)
     generic = generic && hit.t > mpq_class(ray.from) && (ray.to == INFINITY || hit.t < mpq_class(ray.to));
-  const RayHits answer = snug::ray(workspace, ray, options, run);
+  const RayHits answer = snug::ray(surface, ray, options, run);
   ++counted.rays;
   const bool usual = !options.absolute && run.max_splits == usual_budget;
   counted.generic += generic && usual;
@@ -339,11 +342,10 @@ class FlatTrials {
         random_(number),
         name_("flat " + std::to_string(number) + ", " + name_of(case_.options.scheme)),
         twin_(case_.mesh.points, case_.mesh.polygons),
-        surface_(testing::control_mesh(case_.mesh), case_.options, std::make_shared<BoundsCache>()),
-        model_(surface_, {.method = random_() % 4 == 0 ? BoundMethod::table : BoundMethod::rows,
-                          .tight = random_() % 4 == 0,
-                          .threads = 1}),
-        workspace_(model_),
+        surface_(
+            testing::public_surface(testing::control_mesh(case_.mesh), case_.options,
+                                    {.bounds = random_() % 4 == 0 ? BoundMethod::table : BoundMethod::rows,
+                                     .tight = random_() % 4 == 0})),
         counted_(counted) {}
 
   void run(std::uint64_t rays) {
@@ -353,7 +355,7 @@ class FlatTrials {
         options.absolute = std::array{0.0, 1e-9, 1e-3, 10.0, 1e5}[random_() % 5] * surface_.size();
       const Run run{.max_splits = random_() % 16 == 0 ? std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3]
                                                       : usual_budget};
-      check_flat(workspace_, twin_, ray(), options, run, name_ + ", ray " + std::to_string(i), counted_);
+      check_flat(surface_, twin_, ray(), options, run, name_ + ", ray " + std::to_string(i), counted_);
     }
   }
 
@@ -430,9 +432,7 @@ class FlatTrials {
   std::mt19937_64 random_;
   std::string name_;
   FlatFaces twin_;
-  LimitSurface surface_;
-  SurfaceBvh model_;
-  SurfaceWorkspace workspace_;
+  Surface surface_;
   Counted& counted_;
 };
 
@@ -460,17 +460,14 @@ TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
 // Just outside of the border, nearer than a piece is known.
 TEST(rays, beside_a_border_are_no_certain_hits) {
   TaggedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}}, {}, {}, {}};
-  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::bilinear},
-                             std::make_shared<BoundsCache>());
-  const SurfaceBvh model(surface, {.threads = 1});
-  SurfaceWorkspace workspace(model);
+  const Surface surface(testing::control_mesh(mesh), {.scheme = Scheme::bilinear});
   for (int k = 20; k < 50; ++k)
     for (const double share : {0.1, 0.37, 0.5, 0.8})
       for (const double precision : {1e-9, 1e-6, 1e-2}) {
         const double off = std::ldexp(1, -k);
         for (const Point3& from : {Point3{-off, share, 1}, Point3{1 + off, share, 1}, Point3{share, -off, 1},
                                    Point3{share, 1 + off, 1}}) {
-          EXPECT_FALSE(snug::ray(workspace, {from, {0, 0, -1}}, {.absolute = precision}).certain_hit()) << k;
+          EXPECT_FALSE(snug::ray(surface, Ray{from, {0, 0, -1}}, {.absolute = precision}).certain_hit()) << k;
         }
       }
 }
@@ -514,19 +511,20 @@ class CurvedTrials {
   CurvedTrials(CurvedCase c, std::uint64_t seed, CurvedCounts& counts)
       : case_(std::move(c)),
         random_(seed),
-        surface_(control(case_), case_.options, std::make_shared<BoundsCache>()),
-        model_(surface_, {.method = random_() % 4 == 0 ? BoundMethod::table : BoundMethod::rows,
-                          .tight = random_() % 4 == 0,
-                          .threads = 1}),
-        workspace_(model_),
+        surface_(
+            testing::public_surface(control(case_), case_.options,
+                                    {.bounds = random_() % 4 == 0 ? BoundMethod::table : BoundMethod::rows,
+                                     .tight = random_() % 4 == 0})),
+        ball_(surface_.data()->bvh().ball()),
         exponent_(exponent_of(case_.mesh)),
         twin_(scaled(case_.mesh, -exponent_), case_.scheme, case_.levels),
         counts_(counts) {
-    for (std::size_t p = 0; p < surface_.patch_count(); ++p) {
-      if (surface_.has_patch(PatchId(p))) patches_.emplace_back(p);
+    const LimitSurface& limit = surface_.data()->limit();
+    for (std::size_t p = 0; p < limit.patch_count(); ++p) {
+      if (limit.has_patch(PatchId(p))) patches_.emplace_back(p);
     }
     try {
-      static_cast<void>(contains(workspace_, surface_.mesh().points[0]));
+      static_cast<void>(contains(surface_, surface_.mesh().points[0]));
       closed_ = true;
     } catch (const InputError&) {
     }
@@ -560,7 +558,7 @@ class CurvedTrials {
       const auto some = [&] { return between(random_, -1, 1); };
       const Vector3 aside =
           std::array{0.0, 1e-9, 1e-3, 1.0, 1e6}[random_() % 5] * Vector3{some(), some(), some()};
-      Ray ray{q + model_.ball().radius * aside, {}};
+      Ray ray{q + ball_.radius * aside, {}};
       ray.direction = p - ray.origin;
       const double largest = max_abs(ray.direction);
       if (!(largest > 0) || !std::isfinite(largest) || !is_finite(ray.origin)) continue;
@@ -632,12 +630,12 @@ class CurvedTrials {
       u = 1 - u;
       v = 1 - v;
     }
-    return evaluate(surface_, place_of(surface_, p, {u, v}));
+    return evaluate(surface_, place_of(surface_.data()->limit(), p, {u, v}));
   }
   Point3 spot(Spot sort) { return on_patch(sort).point; }
   Point3 anywhere(double share) {
-    Point3 q = model_.ball().centre;
-    for (std::size_t x = 0; x < 3; ++x) q[x] += between(random_, -share, share) * model_.ball().radius;
+    Point3 q = ball_.centre;
+    for (std::size_t x = 0; x < 3; ++x) q[x] += between(random_, -share, share) * ball_.radius;
     return q;
   }
   void find_origins() {
@@ -646,17 +644,17 @@ class CurvedTrials {
       if (i % 2 == 0) {
         const SurfacePoint p = on_patch(Spot::inside);
         if (!p.normal) continue;
-        q = p.point - model_.ball().radius * std::exp2(-between(random_, 1, i % 4 == 0 ? 6 : 20)) * *p.normal;
+        q = p.point - ball_.radius * std::exp2(-between(random_, 1, i % 4 == 0 ? 6 : 20)) * *p.normal;
       }
       if (!is_finite(q)) continue;
       if (!closed_) {
         outside_.push_back(q);
         continue;
       }
-      const std::optional<bool> held = contains(workspace_, q);
+      const std::optional<bool> held = contains(surface_, q);
       if (held) (*held ? inside_ : outside_).push_back(q);
     }
-    outside_.push_back(anywhere(0) + 1e6 * model_.ball().radius * Vector3{0.3, -0.5, 0.7});
+    outside_.push_back(anywhere(0) + 1e6 * ball_.radius * Vector3{0.3, -0.5, 0.7});
   }
 
   void one(std::uint64_t i) {
@@ -679,10 +677,10 @@ class CurvedTrials {
               : p.tangents[0];
       if (along == Vector3{}) along = {1, 0, 0};
       along = (1 / length(along)) * along;
-      ray = {p.point - between(random_, 0, 2) * model_.ball().radius * along, along};
+      ray = {p.point - between(random_, 0, 2) * ball_.radius * along, along};
       uncertified = &counts_.uncertified_touching;
       ++counts_.touching;
-      const std::optional<bool> held = closed_ ? contains(workspace_, ray.origin) : std::nullopt;
+      const std::optional<bool> held = closed_ ? contains(surface_, ray.origin) : std::nullopt;
       ask(ray, {.query = static_cast<RayQuery>(random_() % 3)}, {.max_splits = usual_budget}, held,
           *uncertified, i % 4 == 0);
       return;
@@ -699,7 +697,7 @@ class CurvedTrials {
            std::size_t& uncertified, bool by_twin) {
     const auto where = [&] { return case_.name + ": " + testing_text(ray, options); };
     const auto before = std::chrono::steady_clock::now();
-    const RayHits answer = snug::ray(workspace_, ray, options, run);
+    const RayHits answer = snug::ray(surface_, ray, options, run);
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
     counts_.seconds += took;
     if (took > counts_.slowest) {
@@ -800,9 +798,8 @@ class CurvedTrials {
 
   CurvedCase case_;
   std::mt19937_64 random_;
-  LimitSurface surface_;
-  SurfaceBvh model_;
-  SurfaceWorkspace workspace_;
+  Surface surface_;
+  Ball ball_;
   int exponent_;  // coordinates of the twin are smaller by this power of two
   oracle::RefinedRays twin_;
   CurvedCounts& counts_;

@@ -1,6 +1,6 @@
 // Verdicts for Catmull-Clark, creases, boundaries, polygons and the dual schemes against dense limit samples
 // of the twins, where a surface meets itself or lies inside a larger copy: no pair of samples is nearer than what is
-// called separated.
+// called separated. By trees that are made part by part where queries come.
 
 #include <snug/query/pair_queries.h>
 

@@ -1,14 +1,16 @@
 // The promise for Catmull-Clark, creases, boundaries, non-manifold places and the dual schemes: no limit
 // point of the twins outside its enclosures, and evaluation within its error.
 
-#include <snug/query/bound.h>
-#include <snug/surface/evaluate.h>
+#include <snug/bound.h>
+#include <snug/evaluate.h>
+#include <snug/search/surface_data.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>
+#include <testing/surfaces.h>
 #include <testing/tagged.h>
 
 #include <algorithm>
@@ -25,9 +27,9 @@ struct Sample {
 };
 
 // Results of bound() for one patch, by path.
-using Pieces = std::map<std::string, PieceEnclosure>;
+using Pieces = std::map<std::string, PatchEnclosure>;
 
-bool contains(const PieceEnclosure& piece, const Sample& s, const char*& what) {
+bool contains(const PatchEnclosure& piece, const Sample& s, const char*& what) {
   const testing::Extended p{s.position[0], s.position[1], s.position[2]};
   const long double size = std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]);
   // Extended precision adds 1e-18 of what it works on.
@@ -38,22 +40,26 @@ bool contains(const PieceEnclosure& piece, const Sample& s, const char*& what) {
   return testing::in_interval_triangle(p, piece.interval, slack);
 }
 
-std::vector<BoundOptions> bound_options(const LimitSurface& surface) {
+std::vector<BoundOptions> bound_options(const Surface& surface) {
   std::vector<BoundOptions> list(3);
   list[1].level = 2;
   list[2].error = surface.size() > 0 ? 0.2 * surface.size() : 1;
   return list;
 }
 
-std::vector<Pieces> pieces_of(const LimitSurface& surface, const BoundOptions& options) {
-  std::vector<Pieces> pieces(surface.patch_count());
-  bound(surface, options, [&](const PieceEnclosure& e) { pieces[e.patch.index()][e.path.text()] = e; },
+std::vector<Pieces> pieces_of(const Surface& surface, const BoundOptions& options) {
+  const LimitSurface& limit = surface.data()->limit();
+  std::vector<Pieces> pieces(limit.patch_count());
+  bound(surface, options,
+        [&](const PatchEnclosure& e) {
+          pieces[limit.patches_of(e.patch.owner).begin + e.patch.part][e.piece] = e;
+        },
         {.threads = 1});
   return pieces;
 }
 
 // The piece that holds a parameter of the patch.
-const PieceEnclosure* find_piece(const Pieces& pieces, double u, double v) {
+const PatchEnclosure* find_piece(const Pieces& pieces, double u, double v) {
   std::string path;
   for (int level = 0; level < 60; ++level) {
     if (const auto it = pieces.find(path); it != pieces.end()) return &it->second;
@@ -82,30 +88,30 @@ struct Counted {
 
 // Each sample on each patch that it is on: inside the piece that holds its parameter, and where evaluation
 // says.
-void check_primal(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundsCache>& library,
-                  Counted& counted) {
+void check_primal(const testing::TaggedCase& c, int levels, Counted& counted) {
   const std::string name = c.name + ", " + testing::text_of(c.rules);
-  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
-  const bool loop = surface.options().scheme == Scheme::loop;
+  const Surface surface =
+      testing::public_surface(testing::control_mesh(c.mesh), testing::options_of(c.rules));
+  const LimitSurface& limit = surface.data()->limit();
+  const bool loop = surface.scheme() == Scheme::loop;
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, levels);
   std::set<std::uint32_t> with_samples;
   for (const oracle::FaceSample& s : samples) with_samples.insert(s.face);
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    EXPECT_EQ(surface.has_patch(PatchId(p)), with_samples.contains(surface.place(PatchId(p)).owner))
+  for (std::size_t p = 0; p < limit.patch_count(); ++p) {
+    EXPECT_EQ(limit.has_patch(PatchId(p)), with_samples.contains(limit.place(PatchId(p)).owner))
         << name << ", patch " << p;
-    counted.patches += surface.has_patch(PatchId(p));
+    counted.patches += limit.has_patch(PatchId(p));
   }
   if (::testing::Test::HasFailure()) return;
   std::vector<std::vector<Pieces>> pieces;
   for (const BoundOptions& options : bound_options(surface)) pieces.push_back(pieces_of(surface, options));
-  SurfaceEvaluator evaluator(surface);
   for (const oracle::FaceSample& s : samples) {
     ++counted.samples;
     const std::string where = name + ", face " + std::to_string(s.face) + "." + std::to_string(s.part) +
                               " at " + std::to_string(s.u) + ", " + std::to_string(s.v);
     const Place at{s.face, s.part, s.u, s.v};
-    ASSERT_TRUE(patch_at(surface, at)) << where;
-    const SurfacePoint point = evaluator(at);
+    ASSERT_TRUE(surface.has(at)) << where;
+    const SurfacePoint point = evaluate(surface, at);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_LE(std::fabs(point.point[k] - s.position[k]), point.error + s.error) << where;
     }
@@ -113,9 +119,9 @@ void check_primal(const testing::TaggedCase& c, int levels, const std::shared_pt
     for (unsigned half = 0; half < (loop ? 1u : 2u); ++half) {
       if (!loop && (half == 0 ? s.v > s.u : s.u > s.v)) continue;
       const TriangleParameter t = loop ? TriangleParameter{s.u, s.v} : in_half(s.u, s.v, half);
-      const std::size_t patch = surface.patches_of(s.face).begin + (loop ? 0 : 2 * s.part + half);
+      const std::size_t patch = limit.patches_of(s.face).begin + (loop ? 0 : 2 * s.part + half);
       for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const PieceEnclosure* piece = find_piece(pieces[i][patch], t.u, t.v);
+        const PatchEnclosure* piece = find_piece(pieces[i][patch], t.u, t.v);
         ASSERT_TRUE(piece) << where;
         const char* what = "";
         ++counted.checks;
@@ -134,9 +140,8 @@ void print(const char* name, const Counted& counted) {
 
 TEST(catmark, limit_points_lie_inside_their_enclosures) {
   Counted counted;
-  const auto library = std::make_shared<BoundsCache>();
   for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::catmull_clark, 71)) {
-    check_primal(c, 4, library, counted);
+    check_primal(c, 4, counted);
     if (HasFailure()) FAIL() << c.name << ", " << testing::text_of(c.rules);
   }
   print("catmark", counted);
@@ -145,9 +150,8 @@ TEST(catmark, limit_points_lie_inside_their_enclosures) {
 
 TEST(loop_with_tags, limit_points_lie_inside_their_enclosures) {
   Counted counted;
-  const auto library = std::make_shared<BoundsCache>();
   for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::loop, 72)) {
-    check_primal(c, 4, library, counted);
+    check_primal(c, 4, counted);
     if (HasFailure()) FAIL() << c.name << ", " << testing::text_of(c.rules);
   }
   print("loop", counted);
@@ -160,7 +164,6 @@ TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
   const std::vector<testing::Disguise> disguises =
       testing::disguises({"tiny", "huge", "far", "flat and tilted", "needle", "line", "spiked"});
   Counted counted;
-  const auto library = std::make_shared<BoundsCache>();
   const std::vector<testing::TaggedCase> cases =
       testing::tagged_cases(oracle::PrimalScheme::catmull_clark, 73);
   for (std::size_t i = 0; i < cases.size(); i += 7) {
@@ -168,7 +171,7 @@ TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
       testing::TaggedCase c = cases[i];
       c.name += ", " + name;
       for (oracle::Point& p : c.mesh.points) p = change(p);
-      check_primal(c, 2, library, counted);
+      check_primal(c, 2, counted);
       if (HasFailure()) FAIL() << c.name << ", " << testing::text_of(c.rules);
     }
   }
@@ -181,12 +184,11 @@ TEST(high_valence_corners, limit_points_lie_inside_their_enclosures) {
   std::mt19937_64 random(74);
   for (const oracle::PrimalScheme scheme :
        {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundsCache>();
     const auto check = [&](std::string name, oracle::TaggedMesh mesh) {
       if (scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
       oracle::Rules rules;
       rules.scheme = scheme;
-      check_primal({std::move(name), oracle::meshes::shaken(mesh, 0.1, random), rules}, 3, library, counted);
+      check_primal({std::move(name), oracle::meshes::shaken(mesh, 0.1, random), rules}, 3, counted);
     };
     check("open", oracle::meshes::pole(19, true));
     oracle::TaggedMesh mesh = oracle::meshes::pole(18, false);
@@ -209,8 +211,9 @@ TEST(high_valence_corners, limit_points_lie_inside_their_enclosures) {
 // Samples of a dual scheme name their patch, no parameter: each lies in one of the pieces; and the grid of
 // parameters meets the samples of the patch, all of them.
 void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme scheme, int levels,
-                const std::shared_ptr<BoundsCache>& library, Counted& counted) {
-  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, library);
+                Counted& counted) {
+  const Surface surface(testing::control_mesh(mesh), {.scheme = scheme});
+  const LimitSurface& limit = surface.data()->limit();
   const auto twin = scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
   std::vector<std::vector<Sample>> samples(surface.owner_count());
   for (const oracle::DualSample& s : oracle::sample_dual(mesh, twin, levels)) {
@@ -219,8 +222,8 @@ void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme 
   std::vector<std::vector<Pieces>> pieces;
   for (const BoundOptions& options : bound_options(surface)) pieces.push_back(pieces_of(surface, options));
   for (std::uint32_t owner = 0; owner < surface.owner_count(); ++owner) {
-    const auto [begin, end] = surface.patches_of(owner);
-    const bool there = begin < end && surface.has_patch(PatchId(begin));
+    const auto [begin, end] = limit.patches_of(owner);
+    const bool there = begin < end && limit.has_patch(PatchId(begin));
     if (!there) continue;  // samples of its neighbours' patches may name it
     counted.patches += end - begin;
     const std::string where = name + ", " + name_of(scheme) + ", vertex " + std::to_string(owner);
@@ -236,7 +239,7 @@ void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme 
             const char* what = "";
             const bool inside = contains(piece, s, what);
             found[0] = found[0] || inside || std::string(what) == "interval triangle";
-            PieceEnclosure wide = piece;
+            PatchEnclosure wide = piece;
             wide.offset.radius += 4 * surface.size();
             found[1] = found[1] || contains(wide, s, what);
           }
@@ -275,7 +278,6 @@ TEST(dual_schemes, limit_points_lie_inside_their_enclosures_and_evaluation_meets
   std::mt19937_64 random(74);
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
     Counted counted;
-    const auto library = std::make_shared<BoundsCache>();
     const std::vector<std::pair<std::string, oracle::TaggedMesh>> list{
         {"cube", meshes::cube()},
         {"grid", meshes::quad_grid(5, 4)},
@@ -288,7 +290,7 @@ TEST(dual_schemes, limit_points_lie_inside_their_enclosures_and_evaluation_meets
         {"triangles", meshes::triangulated(meshes::quad_grid(4, 4))},
         {"prism of triangles", meshes::triangulated(meshes::prism(6))}};
     for (const auto& [name, plain] : list) {
-      check_dual(name, meshes::shaken(plain, 0.3, random), scheme, 3, library, counted);
+      check_dual(name, meshes::shaken(plain, 0.3, random), scheme, 3, counted);
       if (HasFailure()) FAIL() << name;
     }
     print(name_of(scheme), counted);

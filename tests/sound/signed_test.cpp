@@ -5,13 +5,14 @@
 //
 // asks about so many points; SNUG_FIRST=N begins with solid N.
 
-#include <snug/query/closest.h>
+#include <snug/distance.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
-#include <snug/search/solid.h>
+#include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <testing/solid_cases.h>
+#include <testing/surfaces.h>
 
 #include <cmath>
 #include <iostream>
@@ -60,11 +61,10 @@ TEST(signed_distance, agrees_with_refined_meshes) {
     const testing::SolidCase c = testing::solid_case(i);
     std::mt19937_64 random(i + 5);
     try {
-      const LimitSurface surface(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>());
-      const SurfaceBvh model(surface);
+      const Surface surface = testing::public_surface(testing::control_mesh(c), c.options);
       const oracle::WindingTwin twin(c.mesh, c.scheme, testing::twin_levels(c.mesh, 400));
       const std::vector<Point3> limit_points = limit_points_of(c);
-      const Ball& ball = model.ball();
+      const Ball& ball = surface.data()->bvh().ball();
       std::vector<Point3> points;
       for (std::uint64_t k = 0; k < points_a_solid; ++k) {
         Point3 q = k % 2 == 0 ? ball.centre : limit_points[random() % limit_points.size()];
@@ -75,7 +75,7 @@ TEST(signed_distance, agrees_with_refined_meshes) {
       }
       Precision options{.absolute = 0, .relative = 0};
       options.absolute = std::exp2(-between(random, 3, 20)) * surface.size();
-      const std::vector<SignedDistance> answers = signed_distance(model, points, options, {.threads = 1});
+      const std::vector<SignedDistance> answers = signed_distance(surface, points, options, {.threads = 1});
       for (std::size_t k = 0; k < points.size(); ++k) {
         const SignedDistance& answer = answers[k];
         const Bounds truth = twin_distance(twin, limit_points, points[k]);
@@ -136,19 +136,16 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
     std::vector<oracle::Triangle> triangles;
     for (const auto& t : shape.polygons) triangles.push_back({t[0], t[1], t[2]});
     const oracle::PolyhedronTwin twin(shape.points, triangles);
-    std::optional<LimitSurface> surface;
-    std::optional<SurfaceBvh> model;
+    std::optional<Surface> surface;
     try {
       constexpr std::array schemes{Scheme::loop, Scheme::catmark, Scheme::flat, Scheme::bilinear};
       const Scheme scheme = schemes[i % schemes.size()];
-      surface.emplace(rules_of(scheme).local ? testing::control_mesh(shape) : sharp_mesh(shape),
-                      SchemeOptions{scheme}, std::make_shared<BoundsCache>());
-      model.emplace(*surface);
-      static_cast<void>(model->solid());
+      surface.emplace(traits_of(scheme).local ? testing::control_mesh(shape) : sharp_mesh(shape),
+                      SurfaceOptions{.scheme = scheme});
+      static_cast<void>(contains(*surface, Point3{}));
     } catch (const InputError&) {
       continue;  // the same triangle twice, or four at an edge
     }
-    SurfaceWorkspace scratch(*model);
     for (int k = 0; k < 60; ++k) {
       // Lattice points lie in planes of faces, on edges and at corners; others a hair away from them.
       Point3 q;
@@ -158,7 +155,7 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
       }
       Precision options{.absolute = 0, .relative = 0};
       options.relative = 1e-9;
-      const SignedDistance answer = signed_distance(scratch, q, options);
+      const SignedDistance answer = signed_distance(*surface, q, options);
       const oracle::Point exact{q.x, q.y, q.z};
       const mpq_class square = twin.squared_distance(exact);
       const std::optional<int> number = twin.winding(exact);
@@ -190,22 +187,16 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
 }
 
 TEST(signed_distance, is_refused_for_open_surfaces_and_bad_points) {
-  const LimitSurface open(testing::control_mesh(oracle::meshes::quad_grid(3, 3)), {Scheme::catmark},
-                          std::make_shared<BoundsCache>());
-  const SurfaceBvh model(open);
-  SurfaceWorkspace scratch(model);
+  const Surface open(testing::control_mesh(oracle::meshes::quad_grid(3, 3)), {.scheme = Scheme::catmark});
   for (const Point3& q : {Point3{0, 0, 1}, Point3{1e9, 0, 0}}) {
-    EXPECT_THROW(static_cast<void>(signed_distance(scratch, q, {})), InputError);
-    EXPECT_THROW(static_cast<void>(contains(scratch, q)), InputError);
+    EXPECT_THROW(static_cast<void>(signed_distance(open, q)), InputError);
+    EXPECT_THROW(static_cast<void>(contains(open, q)), InputError);
   }
-  const LimitSurface cube(testing::control_mesh(oracle::meshes::cube()), {Scheme::catmark},
-                          std::make_shared<BoundsCache>());
-  const SurfaceBvh closed(cube);
-  SurfaceWorkspace other(closed);
-  EXPECT_THROW(static_cast<void>(contains(other, {NAN, 0, 0})), InputError);
-  EXPECT_THROW(static_cast<void>(signed_distance(other, {0, INFINITY, 0}, {})), InputError);
-  EXPECT_EQ(contains(other, {1e300, 0, 0}), std::optional<bool>(false));
-  EXPECT_EQ(contains(other, {0.5, 0.5, 0.5}), std::optional<bool>(true));
+  const Surface cube(testing::control_mesh(oracle::meshes::cube()), {.scheme = Scheme::catmark});
+  EXPECT_THROW(static_cast<void>(contains(cube, Point3{NAN, 0, 0})), InputError);
+  EXPECT_THROW(static_cast<void>(signed_distance(cube, Point3{0, INFINITY, 0})), InputError);
+  EXPECT_EQ(contains(cube, Point3{1e300, 0, 0}), std::optional<bool>(false));
+  EXPECT_EQ(contains(cube, Point3{0.5, 0.5, 0.5}), std::optional<bool>(true));
 }
 
 }  // namespace

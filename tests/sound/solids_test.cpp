@@ -6,14 +6,14 @@
 //
 // asks about so many points; SNUG_FIRST=N begins with solid N.
 
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
-#include <snug/search/solid.h>
+#include <snug/distance.h>
+#include <snug/search/surface_data.h>
 #include <snug/search/winding.h>
 
 #include <gtest/gtest.h>
 #include <support/error.h>
 #include <testing/solid_cases.h>
+#include <testing/surfaces.h>
 
 #include <cmath>
 #include <iostream>
@@ -53,8 +53,8 @@ class Trials {
       : case_(c),
         random_(seed),
         twin_(c.mesh, c.scheme, testing::twin_levels(c.mesh, 1500)),
-        surface_(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>()),
-        model_(surface_, {.threads = 1}),
+        surface_(testing::public_surface(testing::control_mesh(c), c.options)),
+        model_(surface_.data()->bvh()),
         scratch_(model_) {}
 
   void run() {
@@ -93,7 +93,7 @@ class Trials {
   Point3 aimed() {
     const auto& fillers = model_.solid().fillers();
     if (fillers.empty()) return near_surface();
-    const PowerOfTwo back = surface_.scale().inverse();
+    const PowerOfTwo back = model_.surface().scale().inverse();
     const Triangle& t = fillers[random_() % fillers.size()].corners;
     const double b = between(random_, -0.1, 1.1), c = between(random_, -0.1, 1.1);
     const Point3 target = t[0] + (b * (t[1] - t[0]) + c * (t[2] - t[0]));
@@ -111,7 +111,7 @@ class Trials {
   void ask(const Point3& q, int truth, std::uint64_t i) {
     ++asked;
     ++numbers[truth];
-    const Point3 scaled = surface_.scale().apply(q);
+    const Point3 scaled = model_.surface().scale().apply(q);
     const std::optional<int> found = winding_number(scratch_, scaled, 0);
     untold += !found;
     inside += truth != 0;
@@ -124,7 +124,7 @@ class Trials {
     if (found) {
       EXPECT_EQ(*found, truth) << where();
     }
-    const std::optional<bool> held = contains(scratch_, q);
+    const std::optional<bool> held = contains(surface_, q);
     if (held) {
       EXPECT_EQ(*held, truth != 0) << where();
     }
@@ -142,12 +142,10 @@ class Trials {
       const std::array corners{VertexId(f[0]), VertexId(f[1]), VertexId(f[2])};
       mesh.add_face(corners);
     }
-    const LimitSurface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundsCache>());
-    const SurfaceBvh model(surface);
-    SurfaceWorkspace scratch(model);
+    const Surface small(std::move(mesh), {.scheme = Scheme::loop});
     CollideOptions wanted = testing::verdict_only();
     wanted.solid = true;
-    const Collision answer = collide({model_, scratch_, {}}, {model, scratch, {}}, wanted);
+    const Collision answer = collide(surface_, small, wanted);
     if (answer.verdict == Verdict::separated) {
       EXPECT_EQ(truth, 0) << where;
     }
@@ -160,7 +158,7 @@ class Trials {
     DistanceOptions precision;
     precision.relative = 0.1;
     precision.solid = true;
-    const Distance gap = distance({model_, scratch_, {}}, {model, scratch, {}}, precision);
+    const Distance gap = distance(surface_, small, precision);
     if (truth != 0) {
       EXPECT_EQ(gap.distance.lower, 0) << where;
       if (gap.contained) {
@@ -176,8 +174,8 @@ class Trials {
   std::mt19937_64 random_;
   bool aimed_ = false;
   oracle::WindingTwin twin_;
-  LimitSurface surface_;
-  SurfaceBvh model_;
+  Surface surface_;
+  const SurfaceBvh& model_;
   SurfaceWorkspace scratch_;
 };
 

@@ -4,8 +4,8 @@
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/query/bound.h>
-#include <snug/surface/batch_bounds.h>
+#include <snug/bound.h>
+#include <snug/search/surface_data.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>
 
@@ -17,6 +17,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <tuple>
 
 namespace snug::tables_test {
 namespace {
@@ -67,7 +68,7 @@ std::string piece_at(double u, double v, unsigned level) {
   return digits;
 }
 
-bool contains(const PieceEnclosure& piece, const oracle::Point& position, double error) {
+bool contains(const PatchEnclosure& piece, const oracle::Point& position, double error) {
   const testing::Extended p{position[0], position[1], position[2]};
   const long double size = std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]);
   const long double slack = 1.8L * error + 1e-17L * piece.offset.radius + 1e-18L * size;
@@ -75,19 +76,21 @@ bool contains(const PieceEnclosure& piece, const oracle::Point& position, double
          testing::in_interval_triangle(p, piece.interval, slack);
 }
 
-using Pieces = std::map<std::pair<std::size_t, std::string>, PieceEnclosure>;
+using Pieces = std::map<std::tuple<std::uint32_t, std::size_t, std::string>, PatchEnclosure>;
 
-Pieces pieces_of(const LimitSurface& surface, unsigned level) {
+Pieces pieces_of(const Surface& surface, unsigned level) {
   Pieces pieces;
-  BoundOptions options;
-  options.level = level;
-  bound(
-      surface, options,
-      [&](const PieceEnclosure& e) {
-        pieces[{e.patch.index(), e.path.text()}] = e;
-      },
-      {.threads = 1}, BoundMethod::table);
+  bound(surface, {.level = level},
+        [&](const PatchEnclosure& e) {
+          pieces[{e.patch.owner, e.patch.part, e.piece}] = e;
+        },
+        {.threads = 1});
   return pieces;
+}
+
+Surface tabled(ControlMesh mesh, Scheme scheme, BoundaryRule boundary = BoundaryRule::edge_and_corner) {
+  return Surface(std::move(mesh), {.scheme = scheme, .boundary = boundary, .bounds = BoundMethod::table},
+                 {.threads = 1});
 }
 
 // As they are; far away and tiny; flat; snapped to a grid, so that much is exactly on the sides of boxes;
@@ -154,20 +157,19 @@ TEST(tables, contain_limit_points_of_faces) {
       oracle::TaggedMesh twin = plain.mesh;
       for (oracle::Point& p : twin.points) p = disguise.change(p);
       const bool loop = plain.rules.scheme == oracle::PrimalScheme::loop;
-      const SchemeOptions options =
-          with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(plain.rules)},
-                    control_mesh(twin, plain.rules).tags);
-      const LimitSurface surface(control_mesh(twin, plain.rules), options, std::make_shared<BoundsCache>());
+      const Surface surface = tabled(control_mesh(twin, plain.rules), loop ? Scheme::loop : Scheme::catmark,
+                                     boundary_of(plain.rules));
+      const LimitSurface& limit = surface.data()->limit();
       const auto samples = oracle::sample_faces(twin, plain.rules, 4);
       ASSERT_TRUE(!samples.empty() || plain.rules.boundary == oracle::Boundary::none) << plain.name;
       for (const unsigned level : {0u, 2u}) {
         const Pieces pieces = pieces_of(surface, level);
         for (const oracle::FaceSample& s : samples) {
           const OnTriangle at = on_triangle(s, !loop);
-          const PatchId patch(surface.patches_of(s.face).begin + at.part);
+          const PatchId patch(limit.patches_of(s.face).begin + at.part);
           // The first split of a polygon is a level of its own.
-          const unsigned digits = level - (level > 0 && surface.after_first_split(patch) ? 1 : 0);
-          const auto it = pieces.find({patch.index(), piece_at(at.u, at.v, digits)});
+          const unsigned digits = level - (level > 0 && limit.after_first_split(patch) ? 1 : 0);
+          const auto it = pieces.find({s.face, at.part, piece_at(at.u, at.v, digits)});
           ASSERT_NE(it, pieces.end()) << plain.name;
           ASSERT_TRUE(contains(it->second, s.position, s.error))
               << plain.name << ", level " << level << ", face " << s.face << " part " << s.part << " at "
@@ -196,8 +198,7 @@ TEST(tables, contain_limit_points_of_dual_schemes) {
       oracle::TaggedMesh twin = plain.mesh;
       for (oracle::Point& p : twin.points) p = disguise.change(p);
       for (const bool midedge : {false, true}) {
-        const LimitSurface surface(control_mesh(twin, {}), {midedge ? Scheme::midedge : Scheme::doo_sabin},
-                                   std::make_shared<BoundsCache>());
+        const Surface surface = tabled(control_mesh(twin, {}), midedge ? Scheme::midedge : Scheme::doo_sabin);
         const auto samples = oracle::sample_dual(
             twin, midedge ? oracle::DualScheme::midedge : oracle::DualScheme::doo_sabin, 3);
         ASSERT_FALSE(samples.empty()) << plain.name;
@@ -205,9 +206,9 @@ TEST(tables, contain_limit_points_of_dual_schemes) {
           const Pieces pieces = pieces_of(surface, level);
           for (const oracle::DualSample& s : samples) {
             for (const std::uint32_t owner : s.owners) {
-              const auto [begin, end] = surface.patches_of(owner);
-              if (begin == end || !surface.has_patch(PatchId(begin))) continue;
-              const auto first = pieces.lower_bound({begin, {}}), last = pieces.lower_bound({end, {}});
+              if (!surface.has({owner, 0, 0.25, 0.25})) continue;
+              const auto first = pieces.lower_bound({owner, 0, {}}),
+                         last = pieces.lower_bound({owner + 1, 0, {}});
               ASSERT_TRUE(std::any_of(first, last,
                                       [&](const auto& p) { return contains(p.second, s.position, s.error); }))
                   << plain.name << (midedge ? ", midedge" : ", doo-sabin") << ", level " << level
@@ -232,16 +233,16 @@ TEST(tables, give_patch_bounds_that_contain_limit_points) {
       for (oracle::Point& p : twin.points) p = disguise.change(p);
       const bool loop = c.rules.scheme == oracle::PrimalScheme::loop;
       const ControlMesh mesh = control_mesh(twin, c.rules);
-      const LimitSurface surface(
-          mesh, with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)}, mesh.tags),
-          std::make_shared<BoundsCache>());
-      BatchBounds bounds(surface, BoundMethod::table, 1);
+      PatchBounds bounds(tabled(mesh, loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)),
+                         {.threads = 1});
       std::vector<OffsetTriangle> found(bounds.patches().size());
       bounds.update(mesh.points, found);
-      std::map<std::size_t, OffsetTriangle> of_patch;
-      for (std::size_t i = 0; i < found.size(); ++i) of_patch[bounds.patches()[i].index()] = found[i];
+      std::map<std::pair<std::uint32_t, std::size_t>, OffsetTriangle> of_patch;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        of_patch[{bounds.patches()[i].owner, bounds.patches()[i].part}] = found[i];
+      }
       for (const oracle::FaceSample& s : oracle::sample_faces(twin, c.rules, 3)) {
-        const auto it = of_patch.find(surface.patches_of(s.face).begin + on_triangle(s, !loop).part);
+        const auto it = of_patch.find({s.face, on_triangle(s, !loop).part});
         ASSERT_NE(it, of_patch.end());
         const testing::Extended p{s.position[0], s.position[1], s.position[2]};
         const long double size = std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]);

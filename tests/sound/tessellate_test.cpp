@@ -3,13 +3,14 @@
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_test --gtest_filter='tessellate.*'
 
-#include <snug/query/tessellate.h>
+#include <snug/tessellate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
 #include <oracle/limit_twin.h>
 #include <oracle/polygon_twin.h>
 #include <testing/disguised_surfaces.h>
+#include <testing/surfaces.h>
 #include <testing/tessellations.h>
 
 #include <iostream>
@@ -47,10 +48,10 @@ void print(const char* name, const Counted& counted) {
             << counted.samples << " checks; largest distance " << counted.tightest << " of the bound\n";
 }
 
-void check_primal(const testing::TaggedCase& c, const std::shared_ptr<BoundsCache>& library,
-                  Counted& counted) {
+void check_primal(const testing::TaggedCase& c, Counted& counted) {
   const std::string name = c.name + ", " + testing::text_of(c.rules);
-  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
+  const Surface surface =
+      testing::public_surface(testing::control_mesh(c.mesh), testing::options_of(c.rules));
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, 4);
   ++counted.surfaces;
   for (const double tolerance : {10.0, 0.05, 0.004}) {
@@ -84,9 +85,8 @@ void check_primal(const testing::TaggedCase& c, const std::shared_ptr<BoundsCach
 TEST(tessellate, contains_the_limit_points_of_the_twins) {
   for (const PrimalScheme scheme : {PrimalScheme::catmull_clark, PrimalScheme::loop}) {
     Counted counted;
-    const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 91)) {
-      check_primal(c, library, counted);
+      check_primal(c, counted);
       if (HasFailure()) return;
     }
     print(scheme == PrimalScheme::loop ? "loop" : "catmark", counted);
@@ -101,11 +101,10 @@ TEST(tessellate, contains_the_limit_points_of_dual_twins) {
   for (const auto& [scheme, twin] : {std::pair{Scheme::doo_sabin, oracle::DualScheme::doo_sabin},
                                      std::pair{Scheme::midedge, oracle::DualScheme::midedge}}) {
     Counted counted;
-    const auto library = std::make_shared<BoundsCache>();
     for (const oracle::TaggedMesh& plain : {meshes::cube(), meshes::quad_grid(4, 4), meshes::prism(5),
                                             meshes::pyramid(7), meshes::mixed_strip(), meshes::prism(3)}) {
       const oracle::TaggedMesh mesh = meshes::shaken(plain, 0.3, random);
-      const LimitSurface surface(testing::control_mesh(mesh), {scheme}, library);
+      const Surface surface(testing::control_mesh(mesh), {.scheme = scheme});
       ++counted.surfaces;
       for (const double tolerance : {0.05, 0.004}) {
         const Tessellation t = tessellate(surface, to_tolerance(tolerance * surface.size()));
@@ -140,12 +139,11 @@ TEST(tessellate, has_no_point_far_from_the_surface_of_the_twins) {
   Counted counted;
   std::mt19937_64 random(93);
   for (const PrimalScheme scheme : {PrimalScheme::catmull_clark, PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundsCache>();
     std::size_t number = 0;
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 94)) {
       if (number++ % 8 != 0) continue;
-      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
-                                 library);
+      const Surface surface =
+          testing::public_surface(testing::control_mesh(c.mesh), testing::options_of(c.rules));
       const Tessellation t = tessellate(surface, to_tolerance(0.02 * surface.size()));
       if (t.triangles.empty()) continue;
       ++counted.surfaces;
@@ -171,9 +169,12 @@ TEST(tessellate, has_no_point_far_from_the_surface_of_the_twins) {
 
 TEST(tessellate, holds_in_every_disguise) {
   std::size_t surfaces = 0, refused = 0;
+  std::optional<Surface> last;  // keeps the bounds that disguises share
   testing::for_each_disguised_surface(
-      95, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64&) {
-        if (!(surface.size() > 0)) return;
+      95, [&](const LimitSurface& limit, const std::string& name, std::mt19937_64&) {
+        if (!(limit.size() > 0)) return;
+        const Surface surface = testing::public_surface(limit.mesh(), limit.options());
+        last = surface;
         TessellateOptions options = to_tolerance(0.05 * surface.size());
         try {
           const Tessellation t = tessellate(surface, options, {.max_splits = 20'000});
@@ -183,7 +184,7 @@ TEST(tessellate, holds_in_every_disguise) {
             EXPECT_LE(t.error_bound, *options.error) << name;
           }
           // Distances are computed near 1, and evaluation too.
-          if (surface.scale().moderate()) testing::expect_near(surface, t, name, 2);
+          if (limit.scale().moderate()) testing::expect_near(surface, t, name, 2);
           ++surfaces;
         } catch (const InputError& error) {
           EXPECT_EQ(error.problem(), InputProblem::value) << name << ": " << error.what();

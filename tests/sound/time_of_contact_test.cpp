@@ -3,14 +3,13 @@
 //
 //   SNUG_MOTIONS=2000 build/release/bin/tests/sound_test --gtest_filter='time_of_contact.*'
 
-#include <snug/query/pair_queries.h>
+#include <snug/time_of_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
 #include <testing/counts.h>
-#include <testing/patches.h>
 #include <testing/placements.h>
-#include <testing/twins.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,11 +29,8 @@ std::size_t trials(std::size_t usual) { return testing::number_of("SNUG_MOTIONS"
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 struct Part {
-  explicit Part(const oracle::TwinMesh& mesh)
-      : surface(testing::surface_of(mesh)), model(surface), scratch(model), twin(mesh) {}
-  LimitSurface surface;
-  SurfaceBvh model;
-  SurfaceWorkspace scratch;
+  explicit Part(const oracle::TwinMesh& mesh) : surface(testing::public_surface(mesh)), twin(mesh) {}
+  Surface surface;
   oracle::ContactSurface twin;
 };
 
@@ -70,8 +66,7 @@ TEST(time_of_contact, no_points_of_loop_surfaces_meet_before) {
                                 : Trajectory(random_placement(random, random_vector(random, 0.3)));
     const double size = std::max(a.surface.size(), b.surface.size());
     const double tolerance = random() % 4 == 0 ? 1e-6 * size : 1e-3 * size;
-    const TimeOfContact found =
-        time_of_contact({a.model, a.scratch, of_a}, {b.model, b.scratch, of_b}, {.tolerance = tolerance});
+    const TimeOfContact found = time_of_contact(a.surface, of_a, b.surface, of_b, {.tolerance = tolerance});
     ++verdicts[static_cast<std::size_t>(found.verdict)];
     wide += found.outcome != Outcome::complete;
     looks.push_back(found.steps);

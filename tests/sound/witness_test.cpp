@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 #include <oracle/polygon_net.h>
 #include <oracle/polygon_twin.h>
-#include <snug/query/closest.h>
-#include <snug/query/pair_queries.h>
-#include <snug/surface/evaluate.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <array>
@@ -26,11 +26,11 @@ using testing::NamedSurface;
 using testing::unit;
 
 // The general evaluation at the very doubles of a place.
-void expect_on(const LimitSurface& surface, const Motion& pose, const LimitPoint& witness,
+void expect_on(const Surface& surface, const Motion& pose, const LimitPoint& witness,
                const std::string& where) {
   const std::optional<Place>& at = witness.at;
   ASSERT_TRUE(at) << where;
-  ASSERT_TRUE(patch_at(surface, *at)) << where << " u " << at->u << " v " << at->v;
+  ASSERT_TRUE(surface.has(*at)) << where << " u " << at->u << " v " << at->v;
   const SurfacePoint point = evaluate(surface, *at);
   const Point3 placed = pose.apply(point.point);
   // Parameters are rounded to 2^-51; around many faces points move by more than parameters do.
@@ -48,20 +48,19 @@ TEST(witnesses, lie_where_they_say_with_every_scheme) {
     std::size_t patches = 0;
     for (std::size_t p = 0; p < s.surface.patch_count(); ++p) patches += s.surface.has_patch(PatchId(p));
     if (patches == 0) return;
-    const SurfaceBvh model(s.surface, {.threads = 1});
-    SurfaceWorkspace one(model), other(model);
+    const Surface surface = testing::public_surface(s.surface.mesh(), s.surface.options());
     for (int trial = 0; trial < 3; ++trial) {
       const double far = s.surface.size() * (trial == 0 ? 0.3 : 2);
       const Motion a = testing::random_placement(random, testing::random_vector(random, far)),
                    b = testing::random_placement(random, testing::random_vector(random, far));
-      const PlacedBvh placed_a{model, one, a}, placed_b{model, other, b};
+      const PlacedSurface placed_a = surface.at(a), placed_b = surface.at(b);
       CollideOptions options = testing::verdict_only();
       options.tolerance = 0.01 * s.surface.size();
       options.measure = trial != 1;
       const Collision met = collide(placed_a, placed_b, options, {.max_splits = 3000});
       if (met.witness) {
-        expect_on(s.surface, a, (*met.witness)[0], s.name);
-        expect_on(s.surface, b, (*met.witness)[1], s.name);
+        expect_on(surface, a, (*met.witness)[0], s.name);
+        expect_on(surface, b, (*met.witness)[1], s.name);
       }
       if (met.verdict == Verdict::separated && options.measure) {
         ASSERT_TRUE(std::isfinite(met.distance.upper) && met.witness) << s.name;
@@ -74,12 +73,12 @@ TEST(witnesses, lie_where_they_say_with_every_scheme) {
       precise.absolute = 1e-3 * s.surface.size();
       const snug::Run run{.max_splits = 1000};
       const Distance apart = distance(placed_a, placed_b, precise, run);
-      expect_on(s.surface, a, apart.witness[0], s.name);
-      expect_on(s.surface, b, apart.witness[1], s.name);
+      expect_on(surface, a, apart.witness[0], s.name);
+      expect_on(surface, b, apart.witness[1], s.name);
       const ClosestPoint near =
-          closest_point(one, Point3{} + testing::random_vector(random, 2 * s.surface.size()),
+          closest_point(surface, Point3{} + testing::random_vector(random, 2 * s.surface.size()),
                         {.absolute = precise.absolute, .relative = {}}, run);
-      expect_on(s.surface, {}, near, s.name);
+      expect_on(surface, {}, near, s.name);
       asked += 3;
     }
   });
@@ -92,20 +91,17 @@ TEST(witnesses, lie_between_the_samples_of_the_twin) {
   std::mt19937_64 random(72);
   std::size_t checked = 0;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 72, 0)) {
-      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
-                                 library);
+      const Surface surface =
+          testing::public_surface(testing::control_mesh(c.mesh), testing::options_of(c.rules));
       std::map<std::array<std::uint32_t, 2>, std::vector<oracle::FaceSample>> samples;
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, level)) {
         samples[{s.face, s.part}].push_back(s);
       }
       if (samples.empty()) continue;
-      const SurfaceBvh model(surface, {.threads = 1});
-      SurfaceWorkspace scratch(model);
       for (int trial = 0; trial < 40; ++trial) {
         const Point3 to = Point3{} + testing::random_vector(random, 2 * surface.size());
-        const ClosestPoint near = closest_point(scratch, to, {1e-3 * surface.size(), 0});
+        const ClosestPoint near = closest_point(surface, to, {1e-3 * surface.size(), 0});
         const auto& around = samples.at({near.at->owner, near.at->corner});
         // The samples around the place, those of split polygons twice as far apart: their box, made half as
         // large again, holds the point.
@@ -226,10 +222,9 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
   long double most = 0;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     const bool loop = scheme == oracle::PrimalScheme::loop;
-    const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 73)) {
-      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
-                                 library);
+      const Surface surface =
+          testing::public_surface(testing::control_mesh(c.mesh), testing::options_of(c.rules));
       PolygonNet net = oracle::detail::control_net(c.mesh, c.rules).net;
       for (int i = 0; i < level; ++i) net = oracle::detail::refine(net, c.rules);
       const oracle::detail::Neighbours near(net);
@@ -255,7 +250,7 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
           for (double& x : numbers) x *= 1 + 2e-10 * (unit(random) - 0.5);
           pose = Motion::from_3x4(numbers);
         }
-        const auto normal = normal_at(surface, {s.face, s.part, s.u, s.v}, pose);
+        const auto normal = normal_at(surface.at(pose), {s.face, s.part, s.u, s.v});
         if (!normal || !normal->error) continue;
         ++bounded;
         const long double distance =
@@ -275,7 +270,7 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
 
 TEST(normals, have_no_bound_where_there_is_none) {
   const oracle::TaggedMesh mesh = oracle::meshes::pyramid(7);
-  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>());
+  const Surface surface(testing::control_mesh(mesh), {.scheme = Scheme::catmark});
   const auto tip = normal_at(surface, {0, 0, 0, 0});
   if (tip) {
     EXPECT_FALSE(tip->error.has_value());

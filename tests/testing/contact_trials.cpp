@@ -10,6 +10,7 @@
 #include <testing/contact_trials.h>
 #include <testing/counts.h>
 #include <testing/exact_triangles.h>
+#include <testing/surfaces.h>
 #include <testing/twins.h>
 
 namespace snug::testing {
@@ -23,11 +24,6 @@ namespace meshes = oracle::meshes;
 
 /// Trials of a block share the surfaces that are dear to make.
 constexpr std::uint64_t trials_a_block = 2000;
-
-std::shared_ptr<BoundsCache> library() {
-  static const auto shared = std::make_shared<BoundsCache>();
-  return shared;
-}
 
 double size_of(const TwinMesh& mesh) {
   Point lower = mesh.points[mesh.triangles[0][0]], upper = lower;
@@ -80,15 +76,11 @@ int random_exponent(Dice& dice) {
   return exponents[dice.below(6)];
 }
 
-SurfaceBvhOptions random_options(Dice& dice) {
-  SurfaceBvhOptions options;
-  options.threads = 1;
-  if (dice.one_in(6)) options.method = BoundMethod::table;
+ContestantOptions random_options(Dice& dice) {
+  ContestantOptions options;
+  if (dice.one_in(6)) options.bounds = BoundMethod::table;
   options.tight = dice.one_in(3);
-  if (dice.one_in(2)) {
-    options.min_lazy = 0;
-    options.part_level = 1 + dice.below(2);
-  }
+  if (dice.one_in(2)) options.part_level = 1 + dice.below(2);
   return options;
 }
 
@@ -207,35 +199,32 @@ struct Heights {
 
 }  // namespace
 
-Contestants::Contestants(TwinMesh a, TwinMesh b, int exponent, const SurfaceBvhOptions& options)
+Contestants::Contestants(TwinMesh a, TwinMesh b, int exponent, const ContestantOptions& options)
     : exponent_(exponent), options_(options) {
-  make(0, std::move(a), options);
-  make(1, std::move(b), options);
+  make(0, std::move(a));
+  make(1, std::move(b));
 }
 
-Contestants::Contestants(TwinMesh both, int exponent, const SurfaceBvhOptions& options)
+Contestants::Contestants(TwinMesh both, int exponent, const ContestantOptions& options)
     : exponent_(exponent), options_(options) {
-  make(0, std::move(both), options);
+  make(0, std::move(both));
   sides_[1].mesh = sides_[0].mesh;
   sides_[1].surface = sides_[0].surface;
-  sides_[1].model = sides_[0].model;
-  sides_[1].scratch = std::make_unique<SurfaceWorkspace>(*sides_[1].model);
 }
 
-void Contestants::make(std::size_t side, TwinMesh mesh, const SurfaceBvhOptions& options) {
+void Contestants::make(std::size_t side, TwinMesh mesh) {
   Side& s = sides_[side];
   size_ = std::max(size_, size_of(mesh));
   TwinMesh large = mesh;
   for (Point& p : large.points)
     for (double& x : p) x = scaled(x);
   s.mesh = std::make_shared<TwinMesh>(std::move(mesh));
-  s.surface = std::make_shared<LimitSurface>(control_mesh(large), rules(large), library());
-  s.model = std::make_shared<SurfaceBvh>(*s.surface, options);
-  s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
+  s.surface = public_surface(control_mesh(large), rules(large), options_);
+  s.surface->prepare();
 }
 
-PlacedBvh Contestants::placed(std::size_t side, const oracle::Placement& place) {
-  return {*sides_[side].model, *sides_[side].scratch, scaled(place)};
+PlacedSurface Contestants::placed(std::size_t side, const oracle::Placement& place) const {
+  return surface(side).at(scaled(place));
 }
 
 oracle::ContactSurface& Contestants::twin(std::size_t side) {
@@ -796,9 +785,9 @@ std::string describe(const Trial& trial) {
   number(" upper ", trial.truth.upper);
   text += std::string(trial.truth.apart ? " apart" : "") + (trial.truth.meet ? " meet" : "") +
           (trial.truth.crossing ? " crossing" : "");
-  const SurfaceBvhOptions& options = trial.pair->options();
-  text += std::string("; ") + (options.method == BoundMethod::table ? "tables" : "rows") +
-          (options.tight ? ", tight" : "") + (options.min_lazy == 0 ? ", lazy" : "");
+  const ContestantOptions& options = trial.pair->options();
+  text += std::string("; ") + (options.bounds == BoundMethod::table ? "tables" : "rows") +
+          (options.tight ? ", tight" : "") + (options.part_level > 0 ? ", lazy" : "");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {
       std::ofstream file(std::string(folder) + (side == 0 ? "/a.obj" : "/b.obj"));

@@ -10,26 +10,29 @@
 #include <string>
 
 #include <oracle/contact_twin.h>
-#include <snug/search/surface_workspace.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/surface.h>
 
 /// Placed pairs of Loop surfaces on which the queries are tried, with what is known about them beforehand.
 namespace snug::testing {
+
+struct ContestantOptions : SurfaceOptions {
+  /// Levels of the parts in which sound/lazy_trees_test.cpp makes their trees; 0: it passes them over.
+  unsigned part_level = 0;
+};
 
 /// Two surfaces as the library and as the twin see them. The library's coordinates are the twin's times
 /// 2^exponent.
 class Contestants {
  public:
-  Contestants(oracle::TwinMesh a, oracle::TwinMesh b, int exponent, const SurfaceBvhOptions& options = {});
+  Contestants(oracle::TwinMesh a, oracle::TwinMesh b, int exponent, const ContestantOptions& options = {});
   /// One surface twice.
-  Contestants(oracle::TwinMesh both, int exponent, const SurfaceBvhOptions& options = {});
+  Contestants(oracle::TwinMesh both, int exponent, const ContestantOptions& options = {});
 
-  [[nodiscard]] PlacedBvh placed(std::size_t side, const oracle::Placement& place);
-  [[nodiscard]] const SurfaceBvh& model(std::size_t side) const { return *sides_[side].model; }
-  [[nodiscard]] SurfaceWorkspace& scratch(std::size_t side) { return *sides_[side].scratch; }
+  [[nodiscard]] PlacedSurface placed(std::size_t side, const oracle::Placement& place) const;
+  [[nodiscard]] const Surface& surface(std::size_t side) const { return *sides_[side].surface; }
   [[nodiscard]] oracle::ContactSurface& twin(std::size_t side);
   [[nodiscard]] const oracle::TwinMesh& mesh(std::size_t side) const { return *sides_[side].mesh; }
-  [[nodiscard]] const SurfaceBvhOptions& options() const { return options_; }
+  [[nodiscard]] const ContestantOptions& options() const { return options_; }
   [[nodiscard]] int exponent() const { return exponent_; }
   [[nodiscard]] double size() const {
     return size_;
@@ -44,16 +47,14 @@ class Contestants {
  private:
   struct Side {
     std::shared_ptr<oracle::TwinMesh> mesh;
-    std::shared_ptr<LimitSurface> surface;
-    std::shared_ptr<SurfaceBvh> model;
-    std::unique_ptr<SurfaceWorkspace> scratch;
+    std::optional<Surface> surface;
     std::shared_ptr<oracle::ContactSurface> twin;  // made when it is asked for
   };
-  void make(std::size_t side, oracle::TwinMesh mesh, const SurfaceBvhOptions& options);
+  void make(std::size_t side, oracle::TwinMesh mesh);
 
   std::array<Side, 2> sides_;
   int exponent_;
-  SurfaceBvhOptions options_;
+  ContestantOptions options_;
   double size_ = 0;
 };
 

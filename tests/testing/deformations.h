@@ -1,7 +1,6 @@
 #pragma once
 
-#include <snug/query/moving_body.h>
-#include <snug/query/pair_queries.h>
+#include <snug/time_of_contact.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
@@ -9,6 +8,7 @@
 #include <testing/counts.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <array>
@@ -58,12 +58,9 @@ struct Shape {
                                                                  {"prism 5", meshes::prism(5)},
                                                                  {"pyramid 7", meshes::pyramid(7)}}) {
       const oracle::TaggedMesh mesh = meshes::shaken(plain, 0.2, random);
-      const LimitSurface surface(control_mesh(mesh), {scheme}, std::make_shared<BoundsCache>());
+      const Surface surface(control_mesh(mesh), {.scheme = scheme});
       std::vector<bool> there;
-      for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        const auto [begin, end] = surface.patches_of(v);
-        there.push_back(begin < end && surface.has_patch(PatchId(begin)));
-      }
+      for (std::uint32_t v = 0; v < mesh.points.size(); ++v) there.push_back(surface.has({v, 0, 0.25, 0.25}));
       const auto sample = [scheme, there](const oracle::TaggedMesh& moved) {
         std::vector<Point3> points;
         for (const auto& s : oracle::sample_dual(
@@ -149,9 +146,7 @@ struct Body {
         end(std::move(in_end)),
         first(shape.sample(with_points(shape.twin, begin))),
         last(shape.sample(with_points(shape.twin, end))),
-        surface(moved(shape.mesh, std::move(begin)), shape.options, std::make_shared<BoundsCache>()),
-        model(surface),
-        scratch(model) {}
+        surface(public_surface(moved(shape.mesh, std::move(begin)), shape.options)) {}
   static ControlMesh moved(ControlMesh mesh, std::vector<Point3> points) {
     mesh.points = std::move(points);
     return mesh;
@@ -167,9 +162,7 @@ struct Body {
 
   std::string name;
   std::vector<Point3> end, first, last;
-  LimitSurface surface;
-  SurfaceBvh model;
-  SurfaceWorkspace scratch;
+  Surface surface;
 };
 
 /// How both are placed meanwhile.
@@ -252,10 +245,9 @@ inline Tally points_that_meet(std::uint64_t seed, std::size_t count, std::uint64
     }
     const Trajectory motion_b = shifted(any_b, pose_a.apply(a.at(i, s)) - pose_b.apply(still.at(j, s)));
     const double tolerance = std::array{1e-3, 1e-5, 1e-2, 0.0}[trial % 4];
-    SurfaceWorkspace scratch_a(a.model), scratch_b(still.model);
     const TimeOfContact found = time_of_contact(
-        {a.model, scratch_a, motion_a, way_a == 0 ? std::span<const Point3>{} : a.end},
-        {still.model, scratch_b, motion_b, still.end}, {.tolerance = tolerance}, {.max_splits = budget});
+        {a.surface, way_a == 0 ? std::span<const Point3>{} : a.end, motion_a},
+        {still.surface, still.end, motion_b}, {.tolerance = tolerance}, {.max_splits = budget});
     const std::string what = "trial " + std::to_string(trial) + ": " + a.name + " by way " +
                              std::to_string(way_a) + ", " + still.name + " by way " + std::to_string(way_b) +
                              ", placed by " + std::to_string(placing_a) + " and " + std::to_string(placing_b);

@@ -10,8 +10,9 @@
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/query/closest.h>
+#include <snug/distance.h>
 #include <testing/ground_trials.h>
+#include <testing/surfaces.h>
 #include <testing/tagged.h>
 
 namespace snug::testing {
@@ -144,7 +145,7 @@ struct Valence {
 Valence valence_of(const Choices& choices, Dice& dice) {
   const bool plain = choice<Tags>(choices, Factor::tags) == Tags::none,
              rows = choice<BoundMethod>(choices, Factor::sets) == BoundMethod::rows;
-  const bool primal = snug::rules_of(scheme_of(choices)).primal;
+  const bool primal = !traits_of(scheme_of(choices)).dual;
   return {choice<std::uint8_t>(choices, Factor::valence) == 1, !rows                       ? 200U
                                                                : !plain                    ? 230U
                                                                : dice.one_in(30) && primal ? 512U
@@ -369,7 +370,7 @@ double size_of(const TaggedMesh& mesh) {
 }
 
 bool has_surface(const GroundMesh& made) {
-  if (snug::rules_of(made.scheme).primal)
+  if (!traits_of(made.scheme).dual)
     return oracle::refine(made.mesh, made.rules, 0).holes.size() < made.mesh.polygons.size();
   return !oracle::sample_dual(made.mesh, oracle::DualScheme::midedge, 0).empty();
 }
@@ -418,8 +419,7 @@ std::string name_of_value(std::size_t factor, std::size_t value) {
 
 bool is_possible(const Choices& choices) {
   const Scheme scheme = scheme_of(choices);
-  if (!snug::rules_of(scheme).primal &&
-      choice<Connection>(choices, Factor::connection) != Connection::manifold)
+  if (traits_of(scheme).dual && choice<Connection>(choices, Factor::connection) != Connection::manifold)
     return false;
   return scheme == Scheme::catmark || choice<std::uint8_t>(choices, Factor::triangles) == 0;
 }
@@ -495,7 +495,7 @@ GroundMesh make_mesh(const Choices& choices, std::mt19937_64& random) {
   made.rules.smooth_triangles = choice<std::uint8_t>(choices, Factor::triangles) == 1;
   made.rules.clamp_dart_edges = true;
   do {
-    const bool wedge = border != Border::none && snug::rules_of(made.scheme).primal && dice.one_in(3);
+    const bool wedge = border != Border::none && !traits_of(made.scheme).dual && dice.one_in(3);
     made.mesh =
         centred(border == Border::closed ? closed_shape(valence, dice) : open_shape(valence, wedge, dice));
     if (made.rules.smooth_triangles && made.mesh.polygons[0].size() != 3)
@@ -562,25 +562,26 @@ bool GroundSide::has_many() const { return choices[static_cast<std::size_t>(Fact
 bool GroundSide::is_solid() const {
   return choice<Border>(choices, Factor::border) == Border::closed &&
          choice<Connection>(choices, Factor::connection) != Connection::edge &&
-         (choices[static_cast<std::size_t>(Factor::holes)] == 0 || !snug::rules_of(made.scheme).primal);
+         (choices[static_cast<std::size_t>(Factor::holes)] == 0 || traits_of(made.scheme).dual);
 }
 
-PlacedBvh GroundTrial::placed(std::size_t side, SurfaceWorkspace& scratch) const {
-  return {*(*sides)[side].model, scratch, motion(places[side])};
+BoundMethod GroundSide::bounds() const { return choice<BoundMethod>(choices, Factor::sets); }
+
+PlacedSurface GroundTrial::placed(std::size_t side) const {
+  return (*sides)[side].surface->at(motion(places[side]));
 }
 
 /// Data shared by the surfaces of some rows.
 struct GroundTrials::Shared {
   static constexpr std::uint64_t rows = 30;
   std::uint64_t block = UINT64_MAX;
-  std::shared_ptr<BoundsCache> library;
   std::map<std::tuple<Scheme, int, bool, bool>, std::shared_ptr<oracle::LimitRules>> rules;
 
   std::shared_ptr<oracle::LimitRules> rules_of(const GroundMesh& made) {
     const oracle::Rules& r = made.rules;
     auto& found = rules[{made.scheme, static_cast<int>(r.boundary), r.chaikin, r.smooth_triangles}];
     if (!found)
-      found = snug::rules_of(made.scheme).primal
+      found = !traits_of(made.scheme).dual
                   ? std::make_shared<oracle::LimitRules>(r)
                   : std::make_shared<oracle::LimitRules>(made.scheme == Scheme::midedge
                                                              ? oracle::DualScheme::midedge
@@ -593,12 +594,27 @@ GroundTrials::GroundTrials(std::uint64_t of_each_row, bool moving)
     : of_each_row_(of_each_row), moving_(moving), shared_(std::make_unique<Shared>()) {}
 GroundTrials::~GroundTrials() = default;
 
+namespace {
+
+// Refits the tree of the first frame in place: the third one has its memory.
+void make_moved(GroundSide& side, std::uint64_t row, std::mt19937_64& random) {
+  const std::vector<Point3> here = side.surface->mesh().points;
+  side.journey = static_cast<Journey>(row % journey_count);
+  const std::vector<Point3> start = start_of(*side.journey, here, random);
+  MovingSurface moving(*side.surface);
+  static_cast<void>(closest_point(moving.move(start), start[0], {.relative = 1e-2}, {.max_splits = 30}));
+  moving.move(start);
+  side.surface = moving.move(here);
+}
+
+}  // namespace
+
 void GroundTrials::make_sides(std::uint64_t row) {
   if (row == made_) return;
   made_ = row;
   if (row / Shared::rows != shared_->block) {
     shared_->block = row / Shared::rows;
-    shared_->library = std::make_shared<BoundsCache>();
+    for (GroundSide& side : sides_) side.surface.reset();  // and with them the bounds that they share
     shared_->rules.clear();
   }
   std::mt19937_64 random(0x960d + 7919 * row);
@@ -608,7 +624,6 @@ void GroundTrials::make_sides(std::uint64_t row) {
   row_ = row < rows.size() ? rows[row] : random_row(dice, solids);
   for (std::size_t side = 0; side < 2; ++side) {
     GroundSide& s = sides_[side];
-    s.scratch.reset(), s.model.reset(), s.surface.reset();
     std::copy_n(row_.begin() + static_cast<std::ptrdiff_t>(side * factor_count), factor_count,
                 s.choices.begin());
     s.made = make_mesh(s.choices, random);
@@ -618,38 +633,10 @@ void GroundTrials::make_sides(std::uint64_t row) {
     s.size = size_of(s.made.mesh);
     SchemeOptions options = options_of(s.made.rules);
     options.scheme = s.made.scheme;
-    s.surface =
-        std::make_unique<LimitSurface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library);
-    SurfaceBvhOptions model;
-    model.threads = 1;
-    model.method = choice<BoundMethod>(s.choices, Factor::sets);
-    if (moving_) {
-      make_moved(s, model, row + side * (row / journey_count + 1), random);
-    } else {
-      s.model = std::make_unique<SurfaceBvh>(*s.surface, model);
-      s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
-    }
+    s.surface = public_surface(control_mesh(s.made.mesh), options, {.bounds = s.bounds()});
+    if (moving_) make_moved(s, row + side * (row / journey_count + 1), random);
     s.twin = std::make_unique<oracle::LimitTwin>(s.made.mesh, shared_->rules_of(s.made));
   }
-}
-
-void GroundTrials::make_moved(GroundSide& side, const SurfaceBvhOptions& options, std::uint64_t row,
-                              std::mt19937_64& random) const {
-  const std::vector<Point3> here = side.surface->mesh().points;
-  side.journey = static_cast<Journey>(row % journey_count);
-  side.surface->move(start_of(*side.journey, here, random));
-  side.plan.set(nullptr);
-  SurfaceBvhOptions moving = options;
-  if (row / journey_count % 2 == 0) moving.max_looser = INFINITY;
-  side.model = std::make_unique<SurfaceBvh>(*side.surface, moving, side.plan);
-  side.scratch = std::make_unique<SurfaceWorkspace>(*side.model);
-  const Ball& ball = side.model->ball();
-  const Point3 from =
-      std::isfinite(ball.radius) ? ball.centre + ball.radius * Vector3{1, 0.5, 0.25} : Point3{};
-  static_cast<void>(closest_point(*side.scratch, from, {.relative = 1e-2}, {.max_splits = 30}));
-  side.surface->move(here);
-  side.model->refit(side.plan);
-  side.scratch->renew(*side.model);
 }
 
 GroundTrial GroundTrials::make(std::uint64_t number) {

@@ -12,8 +12,8 @@
 
 #include <oracle/limit_twin.h>
 #include <oracle/tagged_mesh.h>
-#include <snug/search/surface_workspace.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/scheme/scheme.h>
+#include <snug/surface.h>
 #include <testing/journeys.h>
 
 /// Placed pairs of surfaces of every scheme, tag and rule, so that each two cases that can go together do.
@@ -60,16 +60,14 @@ struct GroundMesh {
 struct GroundSide {
   Choices choices{};
   GroundMesh made;
-  std::unique_ptr<LimitSurface> surface;
+  std::optional<Surface> surface;
   std::optional<Journey> journey;  ///< that it and its tree have made
-  SharedPlan plan;
-  std::unique_ptr<SurfaceBvh> model;
-  std::unique_ptr<SurfaceWorkspace> scratch;
   std::unique_ptr<oracle::LimitTwin> twin;
   double size = 0;  ///< longest side of the used vertices' box
   /// Of a solid: closed, without holes, and its edges have two faces.
   [[nodiscard]] bool is_solid() const;
   [[nodiscard]] bool has_many() const;  ///< faces around a vertex: 200 or more
+  [[nodiscard]] BoundMethod bounds() const;
 };
 
 struct GroundTrial {
@@ -83,13 +81,12 @@ struct GroundTrial {
 
   [[nodiscard]] double size() const { return std::max((*sides)[0].size, (*sides)[1].size); }
   /// A side as queries take it.
-  [[nodiscard]] PlacedBvh placed(std::size_t side, SurfaceWorkspace& scratch) const;
-  [[nodiscard]] PlacedBvh placed(std::size_t side) const { return placed(side, *(*sides)[side].scratch); }
+  [[nodiscard]] PlacedSurface placed(std::size_t side) const;
 };
 
 /// The same number, the same trial. The first trials go through row_count() rows, so many of each; then rows
-/// are random. Surfaces that move come from elsewhere: their trees are made there and refitted, by the first
-/// plan alone or by another one where need be, and what was known of their pieces has to be forgotten.
+/// are random. Surfaces that move come from elsewhere: their trees are made there and refitted, and what was known
+/// of their pieces has to be forgotten.
 class GroundTrials {
  public:
   explicit GroundTrials(std::uint64_t of_each_row, bool moving = false);
@@ -101,8 +98,6 @@ class GroundTrials {
  private:
   struct Shared;
   void make_sides(std::uint64_t row);
-  void make_moved(GroundSide& side, const SurfaceBvhOptions& options, std::uint64_t row,
-                  std::mt19937_64& random) const;
   std::uint64_t of_each_row_;
   bool moving_;
   std::uint64_t made_ = UINT64_MAX;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <oracle/hull_twin.h>
 #include <oracle/winding_twin.h>
-#include <snug/query/hull.h>
+#include <snug/hull.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +57,33 @@ struct LimitSamples {
     }
   }
   return samples;
+}
+
+[[nodiscard]] inline oracle::TaggedMesh moved(oracle::TaggedMesh mesh, double factor,
+                                              const oracle::Point& by) {
+  for (oracle::Point& p : mesh.points) {
+    for (std::size_t a = 0; a < 3; ++a) p[a] = factor * p[a] + by[a];
+  }
+  return mesh;
+}
+
+[[nodiscard]] inline oracle::TaggedMesh both(oracle::TaggedMesh mesh, const oracle::TaggedMesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
+  for (auto polygon : other.polygons) {
+    for (std::uint32_t& v : polygon) v += first;
+    mesh.polygons.push_back(polygon);
+  }
+  for (auto crease : other.creases) {
+    crease.a += first;
+    crease.b += first;
+    mesh.creases.push_back(crease);
+  }
+  for (auto corner : other.corners) {
+    corner.vertex += first;
+    mesh.corners.push_back(corner);
+  }
+  return mesh;
 }
 
 struct HullCounts {

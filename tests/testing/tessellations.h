@@ -1,8 +1,9 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <snug/query/tessellate.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
+#include <snug/tessellate.h>
 
 #include <algorithm>
 #include <array>
@@ -63,7 +64,8 @@ namespace snug::testing {
 
 /// The triangles cover the parameters of every patch once, oriented as the faces; edges belong to as many triangles
 /// as there are sheets, inside to two in opposite directions.
-inline void expect_watertight(const LimitSurface& surface, const Tessellation& t, const std::string& name) {
+inline void expect_watertight(const Surface& whole_surface, const Tessellation& t, const std::string& name) {
+  const LimitSurface& surface = whole_surface.data()->limit();
   struct Use {
     std::optional<EdgeId> edge;
     std::uint32_t owner;
@@ -132,16 +134,16 @@ inline void expect_watertight(const LimitSurface& surface, const Tessellation& t
 }
 
 /// Evaluated limit points are within error_bound of every triangle at its parameters. The largest distance.
-inline double expect_near(const LimitSurface& surface, const Tessellation& t, const std::string& name,
+inline double expect_near(const Surface& surface, const Tessellation& t, const std::string& name,
                           int steps = 4) {
-  SurfaceEvaluator evaluator(surface);
+  SurfaceEvaluator evaluator(surface.data()->limit());  // much faster than evaluate() of each point
   double largest = 0;
   for (std::size_t i = 0; i < t.triangles.size(); ++i) {
     for (int p = 0; p <= steps; ++p) {
       for (int q = 0; p + q <= steps; ++q) {
         const double b = p / static_cast<double>(steps), c = q / static_cast<double>(steps);
         Place at = between(t.corners[i], b, c);
-        if (surface.rules().triangular()) at.v = std::min(at.v, 1 - at.u);
+        if (surface.traits().triangular) at.v = std::min(at.v, 1 - at.u);
         const SurfacePoint point = evaluator(at);
         const double found = distance_at(t, i, b, c, {point.point.x, point.point.y, point.point.z});
         largest = std::max(largest, found);

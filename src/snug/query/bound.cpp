@@ -1,4 +1,4 @@
-#include <snug/query/bound.h>
+#include <snug/bound.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,19 @@
 
 namespace snug {
 namespace {
+
+// Of one piece of a surface or of a curve, in mesh units.
+template <std::size_t N>
+struct Enclosure {
+  PiecePath path;
+  std::array<Point3, N> corners;  // limit corners, in double precision
+  OffsetSimplex<N> offset;
+  IntervalSimplex<N> interval;
+};
+struct PieceEnclosure : Enclosure<3> {
+  PatchId patch;
+  std::optional<NormalCone> normals{};
+};
 
 // Returns whether rounding alone makes up the radius: then splitting does not help.
 template <std::size_t N>
@@ -196,12 +209,6 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
 
 }  // namespace
 
-BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
-                   const std::function<void(const PieceEnclosure&)>& sink, const Run& run,
-                   BoundMethod method) {
-  return bound_all(SurfacePieces(surface, method), surface.patch_count(), options, sink, run);
-}
-
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const Run& run) {
   return bound_all(
@@ -216,14 +223,14 @@ BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
                    const std::function<void(const PatchEnclosure&)>& sink, const Run& run) {
   const LimitSurface& limit = surface.data()->limit();
-  return bound(
-      limit, options,
+  return bound_all(
+      SurfacePieces(limit, surface.data()->method()), limit.patch_count(), options,
       [&](const PieceEnclosure& piece) {
         sink({limit.place(piece.patch), piece.path.text(),
               piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
               piece.offset, piece.interval, piece.normals});
       },
-      run, surface.data()->method());
+      run);
 }
 
 }  // namespace snug

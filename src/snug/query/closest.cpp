@@ -206,36 +206,6 @@ SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point,
   return answer;
 }
 
-std::vector<ClosestPoint> closest_point(const SurfaceBvh& model, std::span<const Point3> to,
-                                        const Precision& options, const Run& run) {
-  std::vector<ClosestPoint> results(to.size());
-  for_each_point(model, to, run.threads, monitor_of(run), [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = closest_point(workspace, to[i], options, run);
-  });
-  return results;
-}
-
-std::vector<std::optional<bool>> contains(const SurfaceBvh& model, std::span<const Point3> points,
-                                          const Run& run) {
-  static_cast<void>(model.solid());
-  std::vector<std::optional<bool>> results(points.size());
-  for_each_point(
-      model, points, run.threads, monitor_of(run),
-      [&](SurfaceWorkspace& workspace, std::size_t i) { results[i] = contains(workspace, points[i], run); });
-  return results;
-}
-
-std::vector<SignedDistance> signed_distance(const SurfaceBvh& model, std::span<const Point3> points,
-                                            const Precision& options, const Run& run) {
-  static_cast<void>(model.solid());
-  std::vector<SignedDistance> results(points.size());
-  for_each_point(model, points, run.threads, monitor_of(run),
-                 [&](SurfaceWorkspace& workspace, std::size_t i) {
-                   results[i] = signed_distance(workspace, points[i], options, run);
-                 });
-  return results;
-}
-
 ClosestPoint closest_point(const Surface& surface, const Point3& to, const Precision& options,
                            const Run& run) {
   return closest_point(workspace_of(run).pieces().of(surface), to, options, run);
@@ -243,7 +213,12 @@ ClosestPoint closest_point(const Surface& surface, const Point3& to, const Preci
 
 std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const Point3> to,
                                         const Precision& options, const Run& run) {
-  return closest_point(surface.data()->bvh(), to, options, run);
+  std::vector<ClosestPoint> results(to.size());
+  for_each_point(surface.data()->bvh(), to, run.threads, monitor_of(run),
+                 [&](SurfaceWorkspace& workspace, std::size_t i) {
+                   results[i] = closest_point(workspace, to[i], options, run);
+                 });
+  return results;
 }
 
 std::optional<bool> contains(const Surface& surface, const Point3& point, const Run& run) {
@@ -252,7 +227,13 @@ std::optional<bool> contains(const Surface& surface, const Point3& point, const 
 
 std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points,
                                           const Run& run) {
-  return contains(surface.data()->bvh(), points, run);
+  const SurfaceBvh& model = surface.data()->bvh();
+  static_cast<void>(model.solid());
+  std::vector<std::optional<bool>> results(points.size());
+  for_each_point(
+      model, points, run.threads, monitor_of(run),
+      [&](SurfaceWorkspace& workspace, std::size_t i) { results[i] = contains(workspace, points[i], run); });
+  return results;
 }
 
 SignedDistance signed_distance(const Surface& surface, const Point3& point, const Precision& options,
@@ -262,7 +243,14 @@ SignedDistance signed_distance(const Surface& surface, const Point3& point, cons
 
 std::vector<SignedDistance> signed_distance(const Surface& surface, std::span<const Point3> points,
                                             const Precision& options, const Run& run) {
-  return signed_distance(surface.data()->bvh(), points, options, run);
+  const SurfaceBvh& model = surface.data()->bvh();
+  static_cast<void>(model.solid());
+  std::vector<SignedDistance> results(points.size());
+  for_each_point(model, points, run.threads, monitor_of(run),
+                 [&](SurfaceWorkspace& workspace, std::size_t i) {
+                   results[i] = signed_distance(workspace, points[i], options, run);
+                 });
+  return results;
 }
 
 }  // namespace snug

@@ -8,7 +8,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/contact_curves.h>
-#include <snug/query/contacts.h>
 #include <snug/query/pair_queries.h>
 #include <snug/query/touching_boxes.h>
 #include <snug/search/crossing.h>
@@ -351,7 +350,9 @@ class ContactsSearch {
 
 }  // namespace
 
-Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const Run& run) {
+Contacts contacts(const PlacedSurface& surface_a, const PlacedSurface& surface_b,
+                  const ContactsOptions& options, const Run& run) {
+  const auto [a, b] = PlacedPair(surface_a, surface_b, workspace_of(run));
   ContactsOptions wanted = options;
   const double share = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
   if (!wanted.within) wanted.within = share;
@@ -365,12 +366,6 @@ Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions&
     return none;
   }
   return ContactsSearch(a, b, wanted, run).run();
-}
-
-Contacts contacts(const PlacedSurface& a, const PlacedSurface& b, const ContactsOptions& options,
-                  const Run& run) {
-  const PlacedPair at(a, b, workspace_of(run));
-  return contacts(at.a, at.b, options, run);
 }
 
 }  // namespace snug

@@ -1,4 +1,4 @@
-#include <snug/query/deviation.h>
+#include <snug/distance.h>
 #include <snug/search/surface_data.h>
 
 #include <algorithm>
@@ -375,39 +375,31 @@ void require_closed_if_solid(const SurfaceBvh& model, const DeviationOptions& op
 
 }  // namespace
 
-Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate,
+Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
                     const DeviationOptions& options, const Run& run) {
+  const SurfaceBvh& model = surface.data()->bvh();
   require_value(!candidate.empty(), "deviation: the candidate has no triangles");
   require_value(candidate.size() < WideBvh::leaf_bit,
                 "deviation: the candidate has more than 2^31 triangles; compare parts of it");
   const double largest = largest_coordinate(candidate);
-  const LimitSurface& surface = model.surface();
   // Zero fits any scale.
-  const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : surface.scale();
-  const ScaledOptions asked(options, surface, own);
+  const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : model.surface().scale();
+  const ScaledOptions asked(options, model.surface(), own);
   require_closed_if_solid(model, options);
-  SurfaceSet first(surface, asked.scale, asked.first_error(), run);
+  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), run);
   TriangleSet second(candidate, asked.scale);
   return compare(model, first, second, asked, options, run);
 }
 
-Deviation deviation(const SurfaceBvh& model, const SurfaceBvh& candidate, const DeviationOptions& options,
-                    const Run& run) {
-  const ScaledOptions asked(options, model.surface(), candidate.surface().scale());
-  require_closed_if_solid(model, options);
-  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), run);
-  SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), run);
-  return compare(model, first, second, asked, options, run);
-}
-
-Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
-                    const DeviationOptions& options, const Run& run) {
-  return deviation(surface.data()->bvh(), candidate, options, run);
-}
-
 Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,
                     const Run& run) {
-  return deviation(surface.data()->bvh(), candidate.data()->bvh(), options, run);
+  const SurfaceBvh& model = surface.data()->bvh();
+  const LimitSurface& other = candidate.data()->bvh().surface();
+  const ScaledOptions asked(options, model.surface(), other.scale());
+  require_closed_if_solid(model, options);
+  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), run);
+  SurfaceSet second(other, asked.scale, asked.first_error(), run);
+  return compare(model, first, second, asked, options, run);
 }
 
 }  // namespace snug

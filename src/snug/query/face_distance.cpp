@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <snug/evaluate.h>
 #include <snug/geometry/rounding.h>
-#include <snug/query/bound.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/unscale.h>
@@ -65,7 +65,8 @@ double distance_at_most(const Point3& p, const LimitSurface& surface, std::span<
 
 }  // namespace
 
-std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
+std::optional<double> limit_to_faces(const Surface& handle, const Run& run) {
+  const LimitSurface& surface = handle.data()->limit();
   if (!surface.rules().primal) return {};
   if (surface.rules().local) return 0.0;
   const std::vector<bool> sharp = sharp_faces(surface);
@@ -74,9 +75,9 @@ std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
     if (surface.has_patch(PatchId(p)) && !sharp[surface.place(PatchId(p)).owner]) patches.emplace_back(p);
   }
   if (patches.empty()) return 0.0;
-  BatchBounds bounds(surface, patches, {}, threads);
+  BatchBounds bounds(surface, patches, {}, run.threads);
   std::vector<OffsetTriangle> offsets(patches.size());
-  bounds.update(surface.mesh().points, offsets, threads);
+  bounds.update(surface.mesh().points, offsets, run.threads);
   double most = 0;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const auto face = surface.topology().face(FaceId(surface.place(bounds.patches()[i]).owner));
@@ -87,10 +88,6 @@ std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
     most = std::max(most, enlarged(from_base + surface.scale().apply(offsets[i].radius)));
   }
   return require_representable(unscaled_up(most, surface.scale().inverse()));
-}
-
-std::optional<double> limit_to_faces(const Surface& surface, const Run& run) {
-  return limit_to_faces(surface.data()->limit(), run.threads);
 }
 
 }  // namespace snug

@@ -11,10 +11,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include <snug/distance.h>
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
-#include <snug/query/deviation.h>
 #include <snug/query/pair_queries.h>
 #include <snug/query/tessellate.h>
 #include <snug/search/piece.h>
@@ -413,14 +413,15 @@ class FacetSurface {
 // All that is claimed, by queries that know nothing of how the hulls were made.
 class Verification {
  public:
-  Verification(const SurfaceBvh& model, const HullOptions& options, const Hulls& hulls, const Run& run)
-      : model_(model),
+  Verification(const Surface& surface, const HullOptions& options, const Hulls& hulls, const Run& run)
+      : surface_(surface),
+        model_(surface.data()->bvh()),
         options_(options),
         hulls_(hulls),
         monitor_(stop_only(run)),
         run_{.threads = run.threads, .monitor = &monitor_},
         largest_count_(largest_count(hulls)),
-        own_(model, max_kept()) {}
+        own_(model_, max_kept()) {}
 
   std::vector<HullProblem> run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
@@ -504,8 +505,8 @@ class Verification {
     for (const Names& t : hull.triangles) {
       facets.push_back({hull.positions[t[0]], hull.positions[t[1]], hull.positions[t[2]]});
     }
-    const Deviation found =
-        deviation(model_, facets, {.absolute = 0x1p-6 * *options_.error, .threshold = *options_.error}, run_);
+    const Deviation found = deviation(
+        surface_, facets, {.absolute = 0x1p-6 * *options_.error, .threshold = *options_.error}, run_);
     for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
       if (side->distance.upper <= *options_.error) continue;
       std::optional<std::uint32_t> owner;
@@ -525,6 +526,7 @@ class Verification {
     }
   }
 
+  const Surface& surface_;
   const SurfaceBvh& model_;
   const HullOptions& options_;
   const Hulls& hulls_;
@@ -541,13 +543,13 @@ class Verification {
 
 const char* name_of(HullFault fault) { return name_in(fault_names, fault); }
 
-std::vector<HullProblem> problems_of(const SurfaceBvh& surface, const Hulls& hulls,
-                                     const HullOptions& options, const Run& run) {
+std::vector<HullProblem> problems_of(const Surface& surface, const Hulls& hulls, const HullOptions& options,
+                                     const Run& run) {
   return Verification(surface, options, hulls, run).run();
 }
 
-Hulls hull(const SurfaceBvh& model, const HullOptions& wanted, const Run& run) {
-  const LimitSurface& surface = model.surface();
+Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
+  const LimitSurface& surface = handle.data()->bvh().surface();
   HullOptions options = wanted;
   if (!options.error) options.error = share_of_size(1e-2, surface.size());
   require_value(*options.error > 0 && std::isfinite(*options.error),
@@ -578,7 +580,7 @@ Hulls hull(const SurfaceBvh& model, const HullOptions& wanted, const Run& run) {
     (inner ? result.inner : result.outer) = side.take();
     monitor_of(run).report(inner ? 0.3 : 0.6);
   }
-  if (result.problems.empty()) result.problems = problems_of(model, result, options, run);
+  if (result.problems.empty()) result.problems = problems_of(handle, result, options, run);
   const bool too_few =
       std::any_of(result.problems.begin(), result.problems.end(),
                   [](const HullProblem& problem) { return problem.fault == HullFault::too_few_triangles; });
@@ -586,10 +588,6 @@ Hulls hull(const SurfaceBvh& model, const HullOptions& wanted, const Run& run) {
   keep_some(result.problems);
   monitor_of(run).report(1);
   return result;
-}
-
-Hulls hull(const Surface& surface, const HullOptions& options, const Run& run) {
-  return hull(surface.data()->bvh(), options, run);
 }
 
 }  // namespace snug

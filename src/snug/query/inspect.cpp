@@ -13,7 +13,6 @@
 #include <snug/mesh/loose_creases.h>
 #include <snug/mesh/weld.h>
 #include <snug/query/nesting.h>
-#include <snug/query/smoothing_note.h>
 #include <snug/scheme/rules.h>
 #include <snug/search/surface_data.h>
 #include <support/error.h>
@@ -236,11 +235,6 @@ Coincidences coincidences(const ControlMesh& mesh) {
   if (found.vertices > 0) found.edges = count_coincident(boundary, places);
   if (reaches) find_near_vertices(mesh, boundary, places, found);
   return found;
-}
-
-std::string smoothing_note(const Surface& surface, std::string_view option, std::optional<double> apart,
-                           const Run& run) {
-  return smoothing_note(surface.data()->limit(), option, apart, run.threads);
 }
 
 std::optional<std::uint32_t> overlapping_shell(const Surface& surface, const Run& run) {

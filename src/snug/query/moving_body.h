@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <snug/query/linear_patches.h>
-#include <snug/query/pair_queries.h>
 #include <snug/query/trajectory.h>
 #include <snug/search/surface_workspace.h>
+#include <snug/time_of_contact.h>
 
 namespace snug {
 
@@ -44,6 +44,14 @@ class Deformation {
   std::optional<LimitSurface> surface_;
   std::optional<SurfaceBvh> moved_;
   std::optional<SurfaceWorkspace> moved_scratch_;
+};
+
+/// A model that moves, with a workspace as in PlacedBvh.
+struct MovingBvh {
+  const SurfaceBvh& model;  ///< at time 0
+  SurfaceWorkspace& scratch;
+  const Trajectory& motion;
+  std::span<const Point3> end{};  ///< as in DeformingSurface
 };
 
 /// One side of a time of contact: a surface with its motion, during one piece of it after the other.

@@ -7,7 +7,6 @@
 
 #include <snug/distance.h>
 #include <snug/search/workspace.h>
-#include <snug/time_of_contact.h>
 #include <support/run.h>
 
 /// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
@@ -25,20 +24,6 @@ namespace snug {
 /// pieces cut each other, contact is proved as in collide().
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const Run& run = {});
-
-/// A model that moves, with a workspace as in PlacedBvh.
-struct MovingBvh {
-  const SurfaceBvh& model;  ///< at time 0
-  SurfaceWorkspace& scratch;
-  const Trajectory& motion;
-  std::span<const Point3> end{};  ///< as in DeformingSurface
-};
-[[nodiscard]] TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b,
-                                            const TimeOfContactOptions& options = {}, const Run& run = {});
-
-/// Requires:  two workspaces.
-[[nodiscard]] Penetration penetration(const PlacedBvh& a, const PlacedBvh& b,
-                                      const PenetrationOptions& options = {}, const Run& run = {});
 
 /// Two placed surfaces with their trees and their parts of a workspace.
 struct PlacedPair {

@@ -291,16 +291,11 @@ class PenetrationSearch {
 
 }  // namespace
 
-Penetration penetration(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
-                        const Run& run) {
-  require_length(options.relative, "penetration: the precision");
-  return PenetrationSearch(a, b, options, run).run();
-}
-
 Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,
                         const Run& run) {
   const PlacedPair at(a, b, workspace_of(run));
-  return penetration(at.a, at.b, options, run);
+  require_length(options.relative, "penetration: the precision");
+  return PenetrationSearch(at.a, at.b, options, run).run();
 }
 
 }  // namespace snug

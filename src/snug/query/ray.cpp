@@ -100,12 +100,14 @@ class RaySearch {
 
 }  // namespace
 
-RayHits ray(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options, const Run& run) {
+RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
+  SurfaceWorkspace& workspace = workspace_of(run).pieces().of(surface);
   return RaySearch(workspace.model().surface(), options, run).ask(workspace, ray);
 }
 
-std::vector<RayHits> ray(const SurfaceBvh& model, std::span<const Ray> rays, const RayOptions& options,
+std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
                          const Run& run) {
+  const SurfaceBvh& model = surface.data()->bvh();
   const RaySearch search(model.surface(), options, run);
   std::vector<RayHits> answers(rays.size());
   std::atomic<std::size_t> done{0};
@@ -116,15 +118,6 @@ std::vector<RayHits> ray(const SurfaceBvh& model, std::span<const Ray> rays, con
         monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
       });
   return answers;
-}
-
-RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
-  return snug::ray(workspace_of(run).pieces().of(surface), ray, options, run);
-}
-
-std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
-                         const Run& run) {
-  return ray(surface.data()->bvh(), rays, options, run);
 }
 
 }  // namespace snug

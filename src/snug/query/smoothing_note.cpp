@@ -1,9 +1,8 @@
-#include <snug/query/smoothing_note.h>
+#include <snug/inspect.h>
 
 #include <cmath>
 
-#include <snug/geometry/rounding.h>
-#include <snug/query/bound.h>
+#include <snug/evaluate.h>
 #include <snug/scheme/scheme.h>
 #include <support/error.h>
 #include <support/number.h>
@@ -12,9 +11,9 @@ namespace snug {
 namespace {
 
 // Infinite where no double holds it.
-double away_from_faces(const LimitSurface& surface, int threads) {
+double away_from_faces(const Surface& surface, const Run& run) {
   try {
-    return limit_to_faces(surface, threads).value_or(INFINITY);
+    return limit_to_faces(surface, run).value_or(INFINITY);
   } catch (const InputError&) {
     return INFINITY;
   }
@@ -22,10 +21,10 @@ double away_from_faces(const LimitSurface& surface, int threads) {
 
 }  // namespace
 
-std::string smoothing_note(const LimitSurface& surface, std::string_view option, std::optional<double> apart,
-                           int threads) {
-  if (surface.options().scheme != Scheme::loop || !smooths_untagged(surface.mesh())) return {};
-  if (!apart && surface.face_count() <= max_measured_faces) apart = away_from_faces(surface, threads);
+std::string smoothing_note(const Surface& surface, std::string_view option, std::optional<double> apart,
+                           const Run& run) {
+  if (surface.scheme() != Scheme::loop || !smooths_untagged(surface.mesh())) return {};
+  if (!apart && surface.mesh().face_count() <= max_measured_faces) apart = away_from_faces(surface, run);
   if (apart == 0) return {};
   const std::string far = apart ? ", up to " + text_of_length(*apart, surface.size()) + " away from them"
                                 : " (how far from them is not measured above 200,000 faces)";

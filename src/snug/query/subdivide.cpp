@@ -1,5 +1,4 @@
 #include <snug/evaluate.h>
-#include <snug/query/subdivide.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,9 +72,9 @@ double face_count_after(const ControlMesh& mesh, const SchemeRules& rules, unsig
 
 }  // namespace
 
-ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned level, bool limit,
-                      const Run& run) {
-  const SchemeOptions rules = with_tags(options, mesh.tags);
+ControlMesh subdivided(ControlMesh mesh, unsigned level, bool limit, const SurfaceOptions& options,
+                       const Run& run) {
+  const SchemeOptions rules = with_tags(rules_for(mesh, options.scheme, options.boundary), mesh.tags);
   require_subdividable(mesh, rules);
   if (mesh.tags.scheme) mesh.tags.scheme = rules.scheme;
   if (level > 60 || face_count_after(mesh, rules_of(rules.scheme), level) > 0x1p31) {
@@ -154,12 +153,6 @@ ControlMesh subdivided(const CurveSet& curves, unsigned level, bool limit, const
     result.add_polyline(line);
   }
   return result;
-}
-
-ControlMesh subdivided(ControlMesh mesh, unsigned level, bool limit, const SurfaceOptions& options,
-                       const Run& run) {
-  const SchemeOptions rules = rules_for(mesh, options.scheme, options.boundary);
-  return subdivide(std::move(mesh), rules, level, limit, run);
 }
 
 }  // namespace snug

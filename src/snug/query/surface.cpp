@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <snug/query/smoothing_note.h>
+#include <snug/inspect.h>
 #include <snug/search/solid.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
@@ -14,7 +14,7 @@ namespace snug {
 Surface::Surface(ControlMesh mesh, const SurfaceOptions& options, const Run& run)
     : data_(std::make_shared<const SurfaceData>(std::move(mesh), options, run)) {
   if (!options.notes || options.scheme) return;
-  const std::string note = smoothing_note(data_->limit(), "scheme", {}, run.threads);
+  const std::string note = smoothing_note(*this, "scheme", {}, {.threads = run.threads});
   if (!note.empty()) options.notes(note);
 }
 Surface::Surface(std::shared_ptr<const SurfaceData> data) noexcept : data_(std::move(data)) {}

@@ -750,7 +750,8 @@ class CountSearch {
 
 }  // namespace
 
-Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options, const Run& run) {
+Tessellation tessellate(const Surface& handle, const TessellateOptions& options, const Run& run) {
+  const LimitSurface& surface = handle.data()->limit();
   const Limits limits = limits_of(surface, options);
   if (options.max_triangles) return CountSearch(surface, options, limits, run).run();
   MeshRefinement refinement(surface, options, limits, run);
@@ -774,10 +775,6 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   result.mesh = refinement.result(&result.errors);
   result.mesh.outcome = outcome_of(reached, true);
   return result;
-}
-
-Tessellation tessellate(const Surface& surface, const TessellateOptions& options, const Run& run) {
-  return tessellate(surface.data()->limit(), options, run);
 }
 
 }  // namespace snug

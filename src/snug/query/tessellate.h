@@ -8,10 +8,6 @@
 
 namespace snug {
 
-/// tessellate() of tessellate.h.
-[[nodiscard]] Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options,
-                                      const Run& run = {});
-
 /// Of a refinement with tolerances of its own for each owner, in mesh units: also a proved error for each triangle.
 struct LocalTessellation {
   Tessellation mesh;

@@ -475,8 +475,11 @@ class FirstContactSearch {
 
 }  // namespace
 
-TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
-                              const Run& run) {
+TimeOfContact time_of_contact(const DeformingSurface& surface_a, const DeformingSurface& surface_b,
+                              const TimeOfContactOptions& options, const Run& run) {
+  const Workspace::Pieces::Pair pieces = workspace_of(run).pieces().of(surface_a.surface, surface_b.surface);
+  const MovingBvh a{pieces.a.model(), pieces.a, surface_a.motion, surface_a.end},
+      b{pieces.b.model(), pieces.b, surface_b.motion, surface_b.end};
   TimeOfContactOptions wanted = options;
   if (!wanted.tolerance) {
     wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
@@ -499,14 +502,6 @@ TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a, cons
                               const Trajectory& motion_b, const TimeOfContactOptions& options,
                               const Run& run) {
   return time_of_contact({a, {}, motion_a}, {b, {}, motion_b}, options, run);
-}
-
-TimeOfContact time_of_contact(const DeformingSurface& a, const DeformingSurface& b,
-                              const TimeOfContactOptions& options, const Run& run) {
-  const Workspace::Pieces::Pair pieces = workspace_of(run).pieces().of(a.surface, b.surface);
-  const MovingBvh moving_a{pieces.a.model(), pieces.a, a.motion, a.end},
-      moving_b{pieces.b.model(), pieces.b, b.motion, b.end};
-  return time_of_contact(moving_a, moving_b, options, run);
 }
 
 }  // namespace snug

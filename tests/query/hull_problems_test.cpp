@@ -1,0 +1,102 @@
+#include <snug/query/hull.h>
+
+#include <gtest/gtest.h>
+#include <oracle/tagged_shapes.h>
+#include <testing/hulls.h>
+#include <testing/tagged.h>
+
+#include <functional>
+#include <set>
+
+namespace snug::hull_problems_test {
+namespace {
+
+namespace meshes = oracle::meshes;
+using oracle::TaggedMesh;
+using testing::both;
+using testing::moved;
+
+std::set<HullFault> faults_of(const Surface& surface, const Hulls& hulls, double tolerance) {
+  std::set<HullFault> faults;
+  for (const HullProblem& p : problems_of(surface, hulls, {.error = tolerance})) {
+    faults.insert(p.fault);
+  }
+  return faults;
+}
+
+// The final check of hull() does not know how its hulls were made: it must find their faults.
+TEST(hull_problems, of_spoiled_hulls_are_found) {
+  const Surface surface(testing::control_mesh(meshes::cube()));
+  const double tolerance = 0.02;
+  const Hulls good = hull(surface, {.error = tolerance});
+  ASSERT_EQ(good.outcome, Outcome::complete);
+  EXPECT_TRUE(faults_of(surface, good, tolerance).empty());
+  const Point3 centre{0.5, 0.5, 0.5};
+  for (const bool inner : {true, false}) {
+    const auto spoiled = [&](const std::function<void(Hull&)>& spoil) {
+      Hulls bad = good;
+      spoil(inner ? *bad.inner : *bad.outer);
+      return faults_of(surface, bad, tolerance);
+    };
+    const auto move = [&](double factor) {
+      return spoiled([&](Hull& h) { h.positions[11] = centre + factor * (h.positions[11] - centre); });
+    };
+    EXPECT_TRUE(move(inner ? 1.1 : 0.9).contains(HullFault::meets_surface));
+    EXPECT_TRUE(move(inner ? 0.9 : 1.1).contains(HullFault::no_position));
+    EXPECT_TRUE(spoiled([](Hull& h) {
+                  std::swap(h.triangles[5][0], h.triangles[5][1]);
+                }).contains(HullFault::meets_itself));
+    EXPECT_TRUE(spoiled([](Hull& h) {
+                  h.triangles.erase(h.triangles.begin() + 5);
+                  h.owners.pop_back();
+                }).contains(HullFault::not_around));
+    EXPECT_TRUE(spoiled([](Hull& h) {
+                  h.triangles.push_back(h.triangles[5]);
+                  h.owners.push_back(0);
+                }).contains(HullFault::meets_itself));
+    // A fold: a vertex moved sideways beyond its neighbours.
+    EXPECT_TRUE(spoiled([](Hull& h) {
+                  const auto [a, b, c] = h.triangles[5];
+                  h.positions[a] = h.positions[a] + 2.5 * ((h.positions[b] - h.positions[a]) +
+                                                           (h.positions[c] - h.positions[a]));
+                }).contains(HullFault::meets_itself));
+    // Two vertices at one place.
+    EXPECT_TRUE(spoiled([](Hull& h) {
+                  h.positions[h.triangles[5][0]] = h.positions[h.triangles[5][1]];
+                }).contains(HullFault::meets_itself));
+  }
+  Hulls swapped = good;
+  std::swap(swapped.inner, swapped.outer);
+  EXPECT_EQ(faults_of(surface, swapped, tolerance), std::set{HullFault::not_around});
+  Hulls equal = good;
+  equal.inner = equal.outer;
+  EXPECT_TRUE(faults_of(surface, equal, tolerance).contains(HullFault::meets_other));
+  EXPECT_TRUE(faults_of(surface, good, good.outer->gap / 20).contains(HullFault::no_position));
+}
+
+// A part of a hull that lies on the other side of the surface is found out although the surface is around and inside.
+TEST(hull_problems, of_a_component_on_the_wrong_side_are_found) {
+  const TaggedMesh mesh = both(meshes::cube(), moved(meshes::cube(), 1, {3, 0, 0}));
+  const Surface surface(testing::control_mesh(mesh));
+  const double tolerance = 0.05;
+  Hulls hulls = hull(surface, {.error = tolerance});
+  ASSERT_EQ(hulls.outcome, Outcome::complete);
+  for (const bool inner : {true, false}) {
+    Hulls bad = hulls;
+    Hull& hull = inner ? *bad.inner : *bad.outer;
+    // A small closed piece, beside the surface or in it.
+    const auto first = static_cast<std::uint32_t>(hull.positions.size());
+    const Point3 at = inner ? Point3{-0.01, 0.5, 0.5} : Point3{0.2, 0.5, 0.5};
+    for (const Vector3& d : {Vector3{0, 0, 0}, {-1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 1e-3}}) {
+      hull.positions.push_back(at + d);
+    }
+    for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 3u, 1u}, {1u, 3u, 2u}, {0u, 2u, 3u}}) {
+      hull.triangles.push_back({first + a, first + b, first + c});
+      hull.owners.push_back(0);
+    }
+    EXPECT_TRUE(faults_of(surface, bad, 0.5).contains(HullFault::not_around)) << inner;
+  }
+}
+
+}  // namespace
+}  // namespace snug::hull_problems_test
