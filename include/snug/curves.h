@@ -18,8 +18,8 @@ enum class CurveDegree : std::uint8_t {
   cubic = 3,      ///< vertices 1/8 6/8 1/8, edges 1/2 1/2
 };
 
-/// The limit curves of a mesh's polylines: a handle that is cheap to copy, of curves that never change and
-/// may be used by any number of threads at once. Edges are counted along the polylines, one polyline after the other; the closing edge of a closed one is its last.
+/// The limit curves of a mesh's polylines: a handle that is cheap to copy, of curves that never change and may be used by any
+/// number of threads at once. Edges are counted along the polylines; the closing edge of a closed one is its last.
 ///
 /// Errors:    InputError (refused), naming elements, unless every polyline has a limit curve: at least one polyline, two
 ///            vertices each (twice the same is legal), all of them there and finite, no corners.

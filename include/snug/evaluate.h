@@ -75,8 +75,8 @@ struct SurfaceNormal {
 ///
 /// Guarantee: positions are within a few units in the last place of the largest coordinate, per level. The
 ///            sharpness of tags is reduced by the number of steps.
-/// Errors:    InputError: (refused) for a mesh that these rules cannot subdivide, and if the result has more than 2^31 faces; (unrepresentable) if a coordinate
-///            does not fit a double. Interrupted.
+/// Errors:    InputError: (refused) for a mesh that these rules cannot subdivide, and for a result of more than 2^31 faces;
+///            (unrepresentable) if a coordinate does not fit a double. Interrupted.
 /// Cost:      linear in the result.
 [[nodiscard]] SNUG_API ControlMesh subdivided(ControlMesh mesh, unsigned level, bool limit = false,
                                               const SurfaceOptions& options = {}, const Run& run = {});

@@ -91,6 +91,14 @@ def test_objects_come_and_go(manager):
     assert manager.in_collision_internal() is False
 
 
+def test_a_surface_that_was_updated_is_asked_where_it_is_now(manager):
+    surface = manager.add_object("moving", cube(), moved(100.0))
+    assert manager.in_collision_internal(return_names=True)[1] == {("left", "middle")}
+    surface.update(surface.vertices - np.array([95.0, 0.0, 0.0]))
+    assert manager.in_collision_internal(return_names=True)[1] == {("left", "middle"), ("moving", "right")}
+    assert manager.min_distance_single(cube(), moved(5.0)) == 0
+
+
 def test_undecided_raises_unless_something_touches():
     # Two faces of sharp cubes in one plane: with tolerance 0 neither contact nor distance can be shown.
     manager = snug.CollisionManager(tolerance=0)
