@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
+#include <snug/scheme/creases.h>
+#include <testing/tagged.h>
 #include <testing/twins.h>
 
 #include <map>
+#include <random>
 
 namespace snug::refine_test {
 namespace {
@@ -66,6 +69,71 @@ TEST(refine, and_limit_stencils_reach_the_twin_s_limit_points) {
         for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(p[k], it->second.position[k], 1e-14) << f;
       }
     }
+  }
+}
+
+__extension__ using Quad = __float128;
+
+// Where two sharpnesses end at once their exact mean is meant, which no double is.
+TEST(refine, weighs_what_ends_by_the_exact_mean) {
+  std::mt19937_64 random(7);
+  const ControlMesh cube = testing::control_mesh(oracle::meshes::cube());
+  const Topology topology(cube);
+  const VertexId v(0u);
+  Star star;
+  gather_star({topology, {.scheme = Scheme::catmark}, {}}, v, star);
+  for (int trial = 0; trial < 2000; ++trial) {
+    Sharpness sharpness;
+    std::array<double, 2> s{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      s[i] = std::ldexp(static_cast<double>(random() >> 11), -53 - static_cast<int>(random() % 4));
+      set_sharpness(sharpness.edges, topology.edge_count(), star.spokes[i].edge.index(), s[i]);
+    }
+    const RefinedTopology refined = refine(topology, {.scheme = Scheme::catmark}, sharpness);
+    const Stencils::Row row = refined.stencils.row(v.index());
+    const auto mean = (static_cast<Quad>(s[0]) + static_cast<Quad>(s[1])) / 2, rest = 1 - mean;
+    Quad error = 0;
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      const VertexId source(row.sources[i]);
+      Quad exact = rest / 36;  // across a face
+      if (source == v) exact = mean * 3 / 4 + rest * 5 / 12;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (source == star.spokes[k].end) exact = rest / 6 + (k < 2 ? mean / 8 : 0);
+      }
+      const Quad off = static_cast<Quad>(row.weights[i]) - exact;
+      error += off < 0 ? -off : off;
+    }
+    ASSERT_LE(static_cast<double>(error), row.error * (1 + 0x1p-50)) << s[0] << " and " << s[1];
+  }
+}
+
+// Chaikin's mean does not depend on which face comes first.
+TEST(refine, lowers_sharpness_alike_whatever_the_order_of_faces) {
+  std::mt19937_64 random(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    ControlMesh mesh = testing::control_mesh(oracle::meshes::pyramid(7));
+    for (std::uint32_t k = 0; k < 7; ++k) {
+      mesh.tags.creases.push_back(
+          {VertexId(k), VertexId(7u), 1 + 3 * std::ldexp(static_cast<double>(random() >> 11), -53)});
+    }
+    ControlMesh turned = mesh;
+    const std::size_t faces = mesh.face_count();
+    turned.face_offsets = {0};
+    turned.face_vertices.clear();
+    for (std::size_t f = 0; f < faces; ++f) turned.add_face(mesh.face(FaceId((f + 3) % faces)));
+    std::array<std::vector<double>, 2> left;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const ControlMesh& one = side == 0 ? mesh : turned;
+      const Topology topology(one);
+      Star star;
+      const SchemeOptions options{.scheme = Scheme::catmark, .creases = CreaseMethod::chaikin};
+      const Sharpness sharpness = sharpness_of(one, topology);
+      gather_star({topology, options, sharpness}, VertexId(7u), star);
+      for (const Spoke& spoke : star.spokes)
+        left[side].push_back(decayed(star, spoke, CreaseMethod::chaikin));
+      std::sort(left[side].begin(), left[side].end());
+    }
+    ASSERT_EQ(left[0], left[1]);
   }
 }
 

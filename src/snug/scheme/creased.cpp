@@ -22,10 +22,10 @@ class Rows {
       add_by_rule(v, now, star_.spokes, Interval(1));
     } else {
       // Where the rule changes, the share of the old one is the mean of the sharpnesses that end.
-      double sum = 0;
+      Interval sum = 0.0;
       int ending = 0;
       const auto left = [&](double sharpness, double next) {
-        if (sharpness > 0 && next == 0) sum += sharpness, ++ending;
+        if (sharpness > 0 && next == 0) sum = ++ending == 1 ? Interval(sharpness) : sum + Interval(sharpness);
         return next;
       };
       next_ = star_.spokes;
@@ -33,9 +33,11 @@ class Rows {
         spoke.sharpness = left(spoke.sharpness, decayed(star_, spoke, mesh_.options.creases));
       }
       const VertexRule then = vertex_rule(left(star_.sharpness, decayed(star_.sharpness)), next_);
-      const Interval share = then == now || ending == 0 || sum >= ending ? Interval(1)
-                             : ending == 1                               ? Interval(sum)
-                                                                         : Interval(sum) / Interval(ending);
+      Interval share = 1.0;
+      if (then != now && ending > 0 && sum.lower < ending) {
+        if (ending > 1) sum = sum / Interval(ending);
+        share = {sum.lower, std::min(sum.upper, 1.0)};
+      }
       add_by_rule(v, now, star_.spokes, share);
       if (share != Interval(1)) add_by_rule(v, then, next_, Interval(1) - share);
     }

@@ -1,6 +1,7 @@
 #include <snug/scheme/creases.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -49,9 +50,10 @@ Sharpness sharpness_of(const ControlMesh& mesh, const Topology& topology) {
   Sharpness result;
   for (const CreaseTag& tag : mesh.tags.creases) {
     const EdgeId e = edge_between(topology, tag.a, tag.b);
-    if (!e.valid() || (topology.ends_fans(e) && tag.sharpness < infinite_sharpness)) continue;
+    if (!e.valid()) continue;
     if (result.edges.empty()) result.edges.assign(topology.edge_count(), 0.0);
-    result.edges[e.index()] = tag.sharpness;
+    const bool counts = !topology.ends_fans(e) || tag.sharpness >= infinite_sharpness;
+    result.edges[e.index()] = counts ? tag.sharpness : 0;
   }
   for (const CornerTag& tag : mesh.tags.corners) {
     if (result.vertices.empty()) result.vertices.assign(topology.vertex_count(), 0.0);
@@ -131,15 +133,14 @@ double decayed(double sharpness) {
 
 double decayed(const Star& star, const Spoke& spoke, CreaseMethod method) {
   if (method == CreaseMethod::uniform || !is_semi_sharp(spoke.sharpness)) return decayed(spoke.sharpness);
-  double sum = 0;
-  int count = 0;
+  std::vector<double> all;
   for (const Spoke& other : star.spokes) {
-    if (!is_semi_sharp(other.sharpness)) continue;
-    sum += other.sharpness;
-    ++count;
+    if (is_semi_sharp(other.sharpness)) all.push_back(other.sharpness);
   }
-  if (count < 2) return decayed(spoke.sharpness);
-  const double others = (sum - spoke.sharpness) / (count - 1);
+  if (all.size() < 2) return decayed(spoke.sharpness);
+  std::sort(all.begin(), all.end());
+  const double sum = std::accumulate(all.begin(), all.end(), 0.0);
+  const double others = (sum - spoke.sharpness) / static_cast<double>(all.size() - 1);
   return std::max(0.0, 0.75 * spoke.sharpness + 0.25 * others - 1);
 }
 

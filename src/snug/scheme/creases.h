@@ -90,7 +90,8 @@ enum class VertexRule : std::uint8_t { corner, crease, smooth };
 /// Sharpness after one step: less by 1. Infinite ones stay.
 [[nodiscard]] double decayed(double sharpness);
 /// Of a spoke, on the half of the edge at the star's vertex. Chaikin first mixes in a quarter of the mean of
-/// the other semi-sharp spokes. These sums are meant in doubles, as OpenSubdiv means them in floats.
+/// the other semi-sharp spokes. These sums are meant in doubles, from the least sharpness up, as OpenSubdiv means
+/// them in floats.
 /// Source:    [DeRose98, sec. 3]; OpenSubdiv's Sdc::Crease.
 [[nodiscard]] double decayed(const Star& star, const Spoke& spoke, CreaseMethod method);
 
