@@ -379,10 +379,11 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
       oracle::ContactSurface& twin = trial.pair->twin(side);
       const SurfaceBvh& model = trial.pair->surface(side).data()->bvh();
       SurfaceWorkspace scratch(model);
+      const std::uint64_t faces = model.surface().face_count();
       for (int k = 0; k < 8; ++k) {
         // Up to a hair from the surface, along a ray from the origin through a limit point.
         std::uniform_real_distribution<double> unit(-1, 1);
-        const Point on = twin.limit_point(static_cast<std::uint32_t>(trial.random() % 8), 0.3,
+        const Point on = twin.limit_point(static_cast<std::uint32_t>(trial.random() % faces), 0.3,
                                           0.4 * std::abs(unit(trial.random)));
         const double t = 1 + std::ldexp(unit(trial.random), -static_cast<int>(trial.random() % 30));
         const Point p{t * on[0], t * on[1], t * on[2]}, far{9 * on[0], 9 * on[1], 9 * on[2]};
