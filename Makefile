@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: check-all deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: check-all deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs proofs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -137,6 +137,12 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/draw_independence build/release/bin/snug-research docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py
+
+proofs:  ## what certificates rest on, checked by Coq: build/proofs
+	@scripts/install_packages proofs
+	@mkdir -p build/proofs && cp -u proofs/_CoqProject proofs/*.v build/proofs
+	@cd build/proofs && coq_makefile -f _CoqProject -o Makefile && $(MAKE)
+	@cd build/proofs && coqc -Q . Snug Assumptions.v | diff ../../proofs/assumptions.txt - && echo "proofs: all hold, on the axioms of Coq's reals alone"
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
 	@scripts/install_packages build test mpi python gates fuzz
