@@ -27,7 +27,7 @@ demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,demo)
 python_preset = $(if $(wildcard build/release/CMakeCache.txt),release,python)
 demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png; after make page a page of them, build/demo.html
 	@scripts/install_packages build
-	@$(call build,$(demo_preset),snug_command)
+	@$(call build,$(demo_preset),snug_command snug_check)
 	@scripts/demo build/$(demo_preset)/bin/snug build/demo.png
 	@$(if $(wildcard build/web/snug.html),$(MAKE) build/demo.html,\
 	  echo "A page to move the parts in: make page, then make demo again")

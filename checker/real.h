@@ -75,6 +75,26 @@ class Real {
     mpfi_div(a.ends_, a.ends_, b.ends_);
     return a;
   }
+  [[nodiscard]] Real root() const {
+    Real x;
+    mpfi_sqrt(x.ends_, ends_);
+    return x;
+  }
+  /// Contains the lesser one; the larger one; both.
+  friend Real min(Real a, const Real& b) {
+    mpfr_min(&a.ends_->left, &a.ends_->left, &b.ends_->left, MPFR_RNDD);
+    mpfr_min(&a.ends_->right, &a.ends_->right, &b.ends_->right, MPFR_RNDU);
+    return a;
+  }
+  friend Real max(Real a, const Real& b) {
+    mpfr_max(&a.ends_->left, &a.ends_->left, &b.ends_->left, MPFR_RNDD);
+    mpfr_max(&a.ends_->right, &a.ends_->right, &b.ends_->right, MPFR_RNDU);
+    return a;
+  }
+  friend Real hull(Real a, const Real& b) {
+    mpfi_union(a.ends_, a.ends_, b.ends_);
+    return a;
+  }
   [[nodiscard]] Real magnitude() const {
     Real x;
     mpfi_abs(x.ends_, ends_);

@@ -1,4 +1,4 @@
-# CPack: the packages snug, snug-research, libsnug-dev and, where the module is built, python3-snug. `make deb` sets the flags and the date.
+# CPack: the packages snug, snug-check, snug-research, libsnug-dev and, where the module is built, python3-snug. `make deb` sets the flags and the date.
 
 set(SNUG_PACKAGER "snug developers <snug@packages.invalid>" CACHE STRING "Maintainer of the packages: Name <address>")
 set(SNUG_PACKAGE_REVISION 1 CACHE STRING "Debian revision")
@@ -14,7 +14,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # which CPack would put before every description
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
-set(CPACK_COMPONENTS_ALL command research development)
+set(CPACK_COMPONENTS_ALL command check research development)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE ${SNUG_PACKAGE_REVISION})
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${SNUG_PACKAGER}")
@@ -28,12 +28,22 @@ touch, how far apart they are, what encloses them, where rays hit them.")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME snug)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION math)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bash-completion, snug-research")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bash-completion, snug-check, snug-research")
 set(CPACK_DEBIAN_COMMAND_DESCRIPTION "proved answers about subdivision surfaces - command
 ${about}
 .
 This package has the command snug, its manual pages, its completion in bash,
 and the page for browsers that snug view fills.")
+
+set(CPACK_DEBIAN_CHECK_PACKAGE_NAME snug-check)
+set(CPACK_DEBIAN_CHECK_PACKAGE_SECTION math)
+set(CPACK_DEBIAN_CHECK_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_CHECK_PACKAGE_SUGGESTS snug)
+set(CPACK_DEBIAN_CHECK_DESCRIPTION "proved answers about subdivision surfaces - checker of proofs
+${about}
+.
+This package has the program snug-check, which verifies the proofs that snug
+writes with its answers, and shares no code with it.")
 
 set(CPACK_DEBIAN_RESEARCH_PACKAGE_NAME snug-research)
 set(CPACK_DEBIAN_RESEARCH_PACKAGE_SECTION math)

@@ -8,6 +8,7 @@
 #include "column_table.h"
 #include "number_rows.h"
 
+#include "certificate_file.h"
 #include "length.h"
 #include "placed_pair.h"
 #include "progress_bar.h"
@@ -43,15 +44,15 @@ struct Result {
 };
 
 std::vector<Result> find(const Surface& surface, std::span<const Point3> points, const Precision& wanted,
-                         const Options& options, const WorkMonitor& monitor) {
+                         bool with_sign, const Run& run) {
   std::vector<Result> results;
   results.reserve(points.size());
-  if (options.with_sign) {
-    for (SignedDistance& found : signed_distance(surface, points, wanted, run_of(options, monitor))) {
+  if (with_sign) {
+    for (SignedDistance& found : signed_distance(surface, points, wanted, run)) {
       results.push_back({found.nearest, found});
     }
   } else {
-    for (ClosestPoint& found : closest_point(surface, points, wanted, run_of(options, monitor))) {
+    for (ClosestPoint& found : closest_point(surface, points, wanted, run)) {
       results.push_back({found, {}});
     }
   }
@@ -146,7 +147,7 @@ bool write_results(Report& report, const Surface& surface, const std::vector<Res
 }
 
 ExitStatus finish_with_table(Report& report, const Options& options, const Surface& surface,
-                             const std::vector<Result>& results) {
+                             const std::vector<Result>& results, CertificateFile& certificate) {
   const ColumnTable table = table_of(results, surface, options);
   AtomicFile file(options.output);
   file.write(table.file());
@@ -155,7 +156,9 @@ ExitStatus finish_with_table(Report& report, const Options& options, const Surfa
   if (report.json()) report.write().field("count", results.size()).field("complete", results.size() - missed);
   report.text(fmt::format("{}: {} closest points{}", options.output, results.size(),
                           missed == 0 ? "" : fmt::format(", {} wider than asked for", missed)));
-  return report.finish(missed == 0, {&file});
+  std::vector<AtomicFile*> files{&file};
+  certificate.add_to(files);
+  return report.finish(missed == 0, files);
 }
 
 ExitStatus run(const Options& options) {
@@ -166,10 +169,13 @@ ExitStatus run(const Options& options) {
   wanted.absolute = precision.in_mesh_units(surface.size());
   wanted.relative = options.relative;
   std::vector<Result> results;
+  CertificateFile certificate(options);
   {
     ProgressBar bar("closest points", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] { results = find(surface, points, wanted, options, monitor); });
+    naming(options.mesh, [&] {
+      results = find(surface, points, wanted, options.with_sign, certificate.with(run_of(options, monitor)));
+    });
   }
   const bool as_table = ColumnTable::is_table(options.output);
   CommonOptions shown = options;
@@ -177,14 +183,16 @@ ExitStatus run(const Options& options) {
   Report report("closest", shown);
   report.heads({options.mesh}, {name_of(surface.scheme())});
   if (report.json()) report.write().field("absolute", *wanted.absolute).field("relative", *wanted.relative);
-  if (as_table) return finish_with_table(report, options, surface, results);
+  if (as_table) return finish_with_table(report, options, surface, results, certificate);
   if (report.json()) report.write().key("results").begin_array();
   report.text(fmt::format("# {}  x y z  {} u v{}",
                           options.with_sign ? "signed distance: lower upper" : "distance: lower upper",
                           surface.traits().owner(), surface.traits().triangular ? "" : " corner"));
   const bool reached = write_results(report, surface, results);
   if (report.json()) report.write().end_array();
-  return report.finish(reached);
+  std::vector<AtomicFile*> files;
+  certificate.add_to(files);
+  return report.finish(reached, files);
 }
 
 }  // namespace
@@ -204,6 +212,7 @@ Command closest_command() {
       .between(0, 1);
   list.add(Group::own, "--signed", &options->with_sign,
            "Signed distances to a closed surface, negative inside; the sign is proved");
+  add_certificate_option(list, *options).excludes("--signed");
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"closest",

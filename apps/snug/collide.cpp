@@ -7,6 +7,7 @@
 #include <support/atomic_file.h>
 #include <support/run.h>
 
+#include "certificate_file.h"
 #include "contact_report.h"
 #include "length.h"
 #include "placed_pair.h"
@@ -192,7 +193,8 @@ ExitStatus run(const Options& options) {
   if (report.json()) report.write().field("tolerance", *wanted.tolerance).field("margin", wanted.margin);
   if (!options.poses.empty()) return run_poses(options, pair, report, wanted, monitor);
   const Sides sides{pair.a(), pair.b()};
-  Collision answer = collide(pair.a(), pair.b(), wanted, run_of(options, monitor));
+  CertificateFile certificate(options);
+  Collision answer = collide(pair.a(), pair.b(), wanted, certificate.with(run_of(options, monitor)));
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, {.monitor = &monitor});
   if (depth && depth->depth.lower > 0) {
@@ -229,6 +231,7 @@ ExitStatus run(const Options& options) {
     note_nesting(options, pair.a(), pair.b(), monitor);
   std::vector<AtomicFile*> files;
   if (curves) files.push_back(&*curves);
+  certificate.add_to(files);
   const ExitStatus status =
       report.finish(answer.verdict != Verdict::undecided && (!depth || depth->outcome == Outcome::complete) &&
                         (!all || all->outcome == Outcome::complete),
@@ -273,6 +276,7 @@ Command collide_command() {
   list.at("--tolerance").excludes("--scene");
   list.at("--margin").excludes("--scene");
   add_pair_options(list, *options);
+  add_certificate_option(list, *options).excludes("--scene").excludes("--poses").excludes("--penetration");
   list.add(Group::own, "--all-pairs", &options->all_pairs,
            "Also list the pairs of a scene that are separated by the boxes around its parts")
       .needs("--scene");

@@ -31,7 +31,8 @@ struct CommonOptions {
   std::string boundary;  ///< empty: the file's tag, else edge-and-corner
   std::string bounds = "rows";
   bool json = false;
-  std::string output;  ///< -o; empty for none
+  std::string output;       ///< -o; empty for none
+  std::string certificate;  ///< --certificate; empty for none
   int threads = 0;
   std::uint64_t max_splits = default_splits::bound;
   std::string weld;   ///< a length; empty: only equal vertices of STL and glTF files are

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "certificate_file.h"
 #include "length.h"
 #include "placed_pair.h"
 #include "pose_answers.h"
@@ -105,7 +106,8 @@ ExitStatus run(const Options& options) {
   if (report.json()) report.write().field("absolute", *wanted.absolute).field("relative", *wanted.relative);
   if (!options.poses.empty()) return run_poses(options, pair, report, wanted, monitor);
   const Sides sides{pair.a(), pair.b()};
-  const Distance answer = distance(pair.a(), pair.b(), wanted, run_of(options, monitor));
+  CertificateFile certificate(options);
+  const Distance answer = distance(pair.a(), pair.b(), wanted, certificate.with(run_of(options, monitor)));
   if (report.json()) {
     write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
     write_answer(report.write(), sides, answer);
@@ -125,7 +127,9 @@ ExitStatus run(const Options& options) {
     report.text(line);
   }
   if (answer.distance.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
-  return report.finish(answer.outcome == Outcome::complete);
+  std::vector<AtomicFile*> files;
+  certificate.add_to(files);
+  return report.finish(answer.outcome == Outcome::complete, files);
 }
 
 }  // namespace
@@ -142,6 +146,7 @@ Command distance_command() {
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: 0 if one is inside the other");
   add_pair_options(list, *options);
+  add_certificate_option(list, *options).excludes("--scene").excludes("--poses");
   list.add(Group::own, "--limit LENGTH", &options->limit,
            "List the pairs of a scene that are at most this far apart; mesh units")
       .needs("--scene");

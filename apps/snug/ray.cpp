@@ -8,6 +8,7 @@
 #include <support/read_file.h>
 #include "number_rows.h"
 
+#include "certificate_file.h"
 #include "common.h"
 #include "length.h"
 #include "placed_pair.h"
@@ -104,10 +105,12 @@ ExitStatus run(const Options& options) {
   wanted.query = options.all ? RayQuery::all : options.any ? RayQuery::any : RayQuery::nearest;
   wanted.absolute = precision.in_mesh_units(surface.size());
   std::vector<RayHits> answers;
+  CertificateFile certificate(options);
   {
     ProgressBar bar("rays", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] { answers = ray(surface, rays, wanted, run_of(options, monitor)); });
+    const Run run = certificate.with(run_of(options, monitor));
+    naming(options.mesh, [&] { answers = ray(surface, rays, wanted, run); });
   }
   Report report("ray", options);
   report.heads({options.mesh}, {name_of(surface.scheme())});
@@ -120,7 +123,9 @@ ExitStatus run(const Options& options) {
     all_decided = all_decided && decided(answers[i]);
   }
   if (report.json()) report.write().end_array();
-  return report.finish(all_decided);
+  std::vector<AtomicFile*> files;
+  certificate.add_to(files);
+  return report.finish(all_decided, files);
 }
 
 }  // namespace
@@ -141,6 +146,7 @@ Command ray_command() {
   list.add(Group::own, "--absolute LENGTH", &options->precision,
            "Target width of the interval of a hit; mesh units, or percent of the mesh")
       .formerly("--precision");
+  add_certificate_option(list, *options);
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"ray",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import warnings
 from typing import Any, List, Optional, Tuple
 
@@ -174,3 +175,23 @@ def parameters(face: Any, u: Any, v: Any, corner: Any) -> Tuple[Indices, Doubles
         raise ValueError(f"evaluate: face, u, v and corner have the shape {whole[0].shape} together; give numbers or (n,)")
     at = [np.ascontiguousarray(each).reshape(-1) for each in whole]
     return at[0], at[1], at[2], at[3], whole[0].ndim == 0
+
+
+class WholeFile:
+    """A text file that is written completely or not at all."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._temporary = f"{path}.{os.getpid()}.{id(self)}.tmp"
+        self._handle = os.open(self._temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+
+    def write(self, text: str) -> None:
+        with open(self._handle, "w", encoding="ascii", closefd=False) as file:
+            file.write(text)
+        os.replace(self._temporary, self._path)
+
+    def __del__(self) -> None:
+        if hasattr(self, "_handle"):
+            os.close(self._handle)
+            if os.path.exists(self._temporary):
+                os.unlink(self._temporary)

@@ -77,6 +77,7 @@ class Surface(_Tagged):
         max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
+        certificate: Optional[Union[str, "PathLike[str]"]] = None,
     ) -> ClosestPoint: ...
     def signed_distance(
         self,
@@ -101,6 +102,7 @@ class Surface(_Tagged):
         max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
+        certificate: Optional[Union[str, "PathLike[str]"]] = None,
     ) -> Any: ...
     def evaluate(
         self,
@@ -459,6 +461,7 @@ def collide(
     threads: int = 0,
     progress: Progress = None,
     rigid: Optional[str] = None,
+    certificate: Optional[Union[str, "PathLike[str]"]] = None,
 ) -> Collision: ...
 def distance(
     a: Surface,
@@ -473,6 +476,7 @@ def distance(
     threads: int = 0,
     progress: Progress = None,
     rigid: Optional[str] = None,
+    certificate: Optional[Union[str, "PathLike[str]"]] = None,
 ) -> Distance: ...
 def penetration(
     a: Surface,

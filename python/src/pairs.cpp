@@ -8,6 +8,7 @@
 
 #include "answers.h"
 #include "call.h"
+#include "certificate.h"
 #include "poses.h"
 #include "surface.h"
 
@@ -50,7 +51,9 @@ Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, cons
                                     const py::object& pose_b, const py::object& tolerance,
                                     const py::object& margin, bool solid, const py::object& witness,
                                     bool measure, const py::object& max_splits, const py::object& threads,
-                                    const py::object& progress, const py::object& rigid) {
+                                    const py::object& progress, const py::object& rigid,
+                                    const py::object& certificate) {
+  CertificateFile file(certificate);
   CollideOptions options;
   if (!tolerance.is_none()) options.tolerance = length_of(tolerance, larger_size(a, b), "tolerance");
   if (!margin.is_none()) options.margin = *length_of(margin, larger_size(a, b), "margin");
@@ -63,33 +66,36 @@ Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, cons
                                           {"exact", WitnessKind::exact}},
                                          "witness");
   }
-  return for_poses<Collision>(
-      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress, run_of(threads, max_splits),
+  return file.written(for_poses<Collision>(
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
+      file.with(run_of(threads, max_splits)),
       [&](const PlacedSurface& x, const PlacedSurface& y, const Run& run) {
         return collide(x, y, options, run);
       },
       [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses, const Run& run) {
         return collide(x, y, poses, options, run);
-      });
+      }));
 }
 
 Answers<Distance> distance_of_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
                                        const py::object& pose_b, const py::object& relative,
                                        const py::object& absolute, bool solid, const py::object& max_splits,
                                        const py::object& threads, const py::object& progress,
-                                       const py::object& rigid) {
+                                       const py::object& rigid, const py::object& certificate) {
+  CertificateFile file(certificate);
   DistanceOptions options;
   options.relative = number_of(relative, "relative");
   options.absolute = length_of(absolute, larger_size(a, b), "absolute");
   options.solid = solid;
-  return for_poses<Distance>(
-      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress, run_of(threads, max_splits),
+  return file.written(for_poses<Distance>(
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
+      file.with(run_of(threads, max_splits)),
       [&](const PlacedSurface& x, const PlacedSurface& y, const Run& run) {
         return distance(x, y, options, run);
       },
       [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses, const Run& run) {
         return distance(x, y, poses, options, run);
-      });
+      }));
 }
 
 Answers<Penetration> penetration_of_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
@@ -368,13 +374,14 @@ void add_pair_queries(py::module_& module) {
       "collide", collide_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
       arg("pose_b") = none, arg("tolerance") = "0.1%", arg("margin") = 0, arg("solid") = false,
       arg("witness") = "exact", arg("measure") = true, arg("max_splits") = none, arg("threads") = 0,
-      arg("progress") = none, arg("rigid") = none,
+      arg("progress") = none, arg("rigid") = none, arg("certificate") = none,
       ("Do two limit surfaces touch?\n\n" + poses +
        "tolerance, margin: mesh units, or percent of the larger surface's size as in \"0.1%\"; with "
        "tolerance 0 only proofs\n"
        "of contact or separation count. solid: compare the solids that closed surfaces bound.\n"
        "witness: 'none', 'approximate' or 'exact'. measure: narrow the interval of separated surfaces.\n"
-       "max_splits: most splits. threads: for many poses; 0 takes all cores.\n\n"
+       "max_splits: most splits. threads: for many poses; 0 takes all cores.\n"
+       "certificate: a file for a proof of the answers, which snug-check verifies.\n\n"
        "Guarantee: 'separated' means distance > margin, 'within' distance <= margin + tolerance, "
        "'intersecting' a common\n"
        "point, for the doubles given. The answer depends on the input alone.\n"
@@ -383,6 +390,7 @@ void add_pair_queries(py::module_& module) {
   module.def("distance", distance_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
              arg("pose_b") = none, arg("relative") = none, arg("absolute") = none, arg("solid") = false,
              arg("max_splits") = none, arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+             arg("certificate") = none,
              ("How far apart are two limit surfaces?\n\n" + poses +
               "The work ends once upper - lower <= max(absolute, relative * upper); absolute is in mesh "
               "units, or percent of the\n"

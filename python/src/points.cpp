@@ -9,6 +9,7 @@
 
 #include "answers.h"
 #include "call.h"
+#include "certificate.h"
 #include "state.h"
 #include "surface.h"
 
@@ -47,16 +48,18 @@ Precision precision_of(const PySurface& self, const py::object& relative, const 
 
 Answers<ClosestPoint> closest(const PySurface& self, const py::object& points, const py::object& relative,
                               const py::object& absolute, const py::object& max_splits,
-                              const py::object& threads, const py::object& progress) {
+                              const py::object& threads, const py::object& progress,
+                              const py::object& certificate) {
+  CertificateFile file(certificate);
   const Precision options = precision_of(self, relative, absolute);
-  return for_points<ClosestPoint>(
-      self, points, progress, run_of(threads, max_splits),
+  return file.written(for_points<ClosestPoint>(
+      self, points, progress, file.with(run_of(threads, max_splits)),
       [&](const Surface& surface, const Point3& p, const Run& run) {
         return closest_point(surface, p, options, run);
       },
       [&](const Surface& surface, std::span<const Point3> all, const Run& run) {
         return closest_point(surface, all, options, run);
-      });
+      }));
 }
 
 Answers<SignedDistance> signed_of(const PySurface& self, const py::object& points, const py::object& relative,
@@ -231,7 +234,8 @@ Hits traced(const PySurface& self, const RayInput& input, const RayOptions& opti
 py::object find_hits(PySurface& self, const py::object& origins, const py::object& directions,
                      const py::object& query, bool certified, const py::object& absolute,
                      const py::object& error, const py::object& max_splits, const py::object& threads,
-                     const py::object& progress) {
+                     const py::object& progress, const py::object& certificate) {
+  CertificateFile file(certificate);
   const RayInput input(origins, directions);
   RayOptions options;
   const std::string word = py::isinstance<py::str>(query) ? query.cast<std::string>() : "";
@@ -244,8 +248,11 @@ py::object find_hits(PySurface& self, const py::object& origins, const py::objec
   const int all_threads = threads_of(threads);
   if (certified) {
     options.absolute = length_of(absolute, self.surface().size(), "absolute");
-    return py::cast(traced(self, input, options, run_of(threads, max_splits), progress));
+    return py::cast(
+        file.written(traced(self, input, options, file.with(run_of(threads, max_splits)), progress)));
   }
+  if (!certificate.is_none())
+    throw InputError(InputProblem::value, "certificate: hits without proof (certified=False) have none");
   if (word != "nearest")
     throw InputError(InputProblem::value,
                      "query: without proof (certified=False) only 'nearest' can be asked");
@@ -461,9 +468,11 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
       .def(
           "closest_point", &closest, arg("points"), py::kw_only(), arg("relative") = none,
           arg("absolute") = none, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
+          arg("certificate") = none,
           (std::string(
                "The point of the surface closest to a point (3,), or to each of (n, 3), in mesh units.\n\n") +
            narrow +
+           "certificate: a file for a proof of the distances, which snug-check verifies.\n"
            "\nGuarantee: [lower, upper] contains the distance. Raises ValueError, MeshError, OverflowError.")
               .c_str())
       .def("signed_distance", &signed_of, arg("points"), py::kw_only(), arg("relative") = none,
@@ -478,13 +487,14 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
            "Raises ValueError; MeshError for a surface that is not closed.")
       .def("ray", &find_hits, arg("origins"), arg("directions"), py::kw_only(), arg("query") = "nearest",
            arg("certified") = true, arg("absolute") = none, arg("error") = "0.01%", arg("max_splits") = none,
-           arg("threads") = 0, arg("progress") = none,
+           arg("threads") = 0, arg("progress") = none, arg("certificate") = none,
            "Where rays meet the surface: origins and directions (3,) or (n, 3), one of either beside n of "
            "the other.\n\n"
            "query: 'nearest', 'any', 'all'. absolute: length of a hit's interval, mesh units or percent. "
            "max_splits: most splits for "
            "each ray.\n"
-           "certified=False: a QuickHit for pictures, within `error`; nothing is proved.\n\n"
+           "certified=False: a QuickHit for pictures, within `error`; nothing is proved.\n"
+           "certificate: a file for a proof of hits and misses, which snug-check verifies.\n\n"
            "Raises ValueError, MeshError, OverflowError.")
       .def("evaluate", &evaluated, arg("face"), arg("u"), arg("v"), arg("corner") = 0, py::kw_only(),
            arg("threads") = 0, arg("progress") = none,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
@@ -208,7 +209,9 @@ SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point,
 
 ClosestPoint closest_point(const Surface& surface, const Point3& to, const Precision& options,
                            const Run& run) {
-  return closest_point(workspace_of(run).pieces().of(surface), to, options, run);
+  const ClosestPoint found = closest_point(workspace_of(run).pieces().of(surface), to, options, run);
+  certify(run, surface, {&to, 1}, {&found, 1});
+  return found;
 }
 
 std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const Point3> to,
@@ -218,6 +221,7 @@ std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const 
                  [&](SurfaceWorkspace& workspace, std::size_t i) {
                    results[i] = closest_point(workspace, to[i], options, run);
                  });
+  certify(run, surface, to, results);
   return results;
 }
 

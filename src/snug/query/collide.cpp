@@ -3,9 +3,11 @@
 #include <optional>
 #include <vector>
 
+#include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/nesting.h>
 #include <snug/query/pair_queries.h>
+
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
@@ -297,12 +299,17 @@ Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& 
 Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options,
                   const Run& run) {
   const PlacedPair at(a, b, workspace_of(run));
-  return collide(at.a, at.b, options, run);
+  const Collision answer = collide(at.a, at.b, options, run);
+  certify(run, a, b, options, answer);
+  return answer;
 }
 
 std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const CollideOptions& options, const Run& run) {
-  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(collide, poses, options, run);
+  const std::vector<Collision> answers =
+      PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(collide, poses, options, run);
+  certify(run, a, b, poses, options, answers);
+  return answers;
 }
 
 }  // namespace snug

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/nesting.h>
 #include <snug/query/pair_queries.h>
@@ -215,12 +216,17 @@ Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions&
 Distance distance(const PlacedSurface& a, const PlacedSurface& b, const DistanceOptions& options,
                   const Run& run) {
   const PlacedPair at(a, b, workspace_of(run));
-  return distance(at.a, at.b, options, run);
+  const Distance answer = distance(at.a, at.b, options, run);
+  certify(run, a, b, options, answer);
+  return answer;
 }
 
 std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const DistanceOptions& options, const Run& run) {
-  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(distance, poses, options, run);
+  const std::vector<Distance> answers =
+      PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(distance, poses, options, run);
+  certify(run, a, b, poses, options, answers);
+  return answers;
 }
 
 }  // namespace snug

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
 #include <snug/search/precision.h>
 #include <snug/search/ray_scale.h>
@@ -102,7 +103,9 @@ class RaySearch {
 
 RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
   SurfaceWorkspace& workspace = workspace_of(run).pieces().of(surface);
-  return RaySearch(workspace.model().surface(), options, run).ask(workspace, ray);
+  const RayHits answer = RaySearch(workspace.model().surface(), options, run).ask(workspace, ray);
+  certify(run, surface, {&ray, 1}, options.query, {&answer, 1});
+  return answer;
 }
 
 std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
@@ -117,6 +120,7 @@ std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, cons
         for (std::size_t i = begin; i < end; ++i) answers[i] = search.ask(workspace, rays[i]);
         monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
       });
+  certify(run, surface, rays, options.query, answers);
   return answers;
 }
 

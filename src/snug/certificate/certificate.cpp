@@ -1,0 +1,205 @@
+#include <snug/certificate/certificate.h>
+
+#include <cmath>
+
+#include <snug/certificate/meeting.h>
+#include <snug/certificate/text.h>
+#include <support/point.h>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t max_leaves = 100'000;
+constexpr std::size_t max_place_steps = 400;  // of the name of a piece
+constexpr double place_size = 0x1p-40;        // of a piece, in sizes of its surface
+
+Box3 placed_box(const NetRange& range, const Motion& pose) {
+  Box3 box;
+  for (const Point3& p : range.hull()) box.add(pose.apply(p));
+  return box;
+}
+
+// No two points of the boxes are farther apart.
+double farthest(const Box3& a, const Box3& b) {
+  Vector3 between;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    between[axis] =
+        std::max(std::fabs(b.upper[axis] - a.lower[axis]), std::fabs(a.upper[axis] - b.lower[axis]));
+  }
+  return length(between);
+}
+
+}  // namespace
+
+void append_exactly(std::string& text, double value) {
+  if (value < 0) text += '-';
+  int exponent = 0;
+  auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::fabs(value), &exponent), 53));
+  exponent -= 53;
+  for (; mantissa != 0 && mantissa % 2 == 0; mantissa /= 2) ++exponent;
+  std::string digits;
+  for (; mantissa != 0; mantissa /= 16) digits.insert(digits.begin(), "0123456789abcdef"[mantissa % 16]);
+  text += value == 0 ? "0x0p0" : "0x" + digits + "p" + std::to_string(exponent);
+}
+
+std::size_t CertificateWriter::index_of(const Surface& surface) {
+  const auto [known, is_new] = indices_.try_emplace(surface.data().get(), surfaces_.size());
+  if (is_new) {
+    surfaces_.push_back(std::make_unique<CertifiedSurface>(surface));
+    surfaces_.back()->write(text_);
+  }
+  return known->second;
+}
+
+void CertificateWriter::set_side(std::size_t side, const PlacedSurface& surface) {
+  of_sides_[side] = surfaces_[index_of(surface.surface())].get();
+  sides_[side] = {.pieces = &of_sides_[side]->all(), .pose = surface.pose(), .points = {}, .direction = {}};
+  text_ += "placed";
+  append_words(text_, index_of(surface.surface()));
+  for (const double x : surface.pose().numbers()) append_words(text_, x);
+  text_ += '\n';
+}
+
+void CertificateWriter::begin_question() {
+  question_ = text_.size();
+  text_ += "question\n";
+}
+
+void CertificateWriter::drop_question_without_claim() {
+  if (question_ != 0) {
+    if (text_.size() == claims_) {
+      text_.resize(question_);
+    } else {
+      has_claims_ = true;
+    }
+  }
+  question_ = 0;
+  // What earlier questions needed of the surfaces may be of no use.
+  if (++asked_ % 256 == 0) {
+    for (const auto& surface : surfaces_) surface->all().forget();
+  }
+}
+
+void CertificateWriter::ask(const PlacedSurface& a, const PlacedSurface& b) {
+  drop_question_without_claim();
+  for (const PlacedSurface* side : {&a, &b}) index_of(side->surface());
+  begin_question();
+  set_side(0, a);
+  set_side(1, b);
+  claims_ = text_.size();
+}
+
+void CertificateWriter::ask(const PlacedSurface& a, const Point3& b) {
+  drop_question_without_claim();
+  index_of(a.surface());
+  begin_question();
+  set_side(0, a);
+  sides_[1] = {.pieces = nullptr, .pose = {}, .points = {b}, .direction = {}};
+  text_ += "point";
+  append_words(text_, b.x, b.y, b.z);
+  text_ += '\n';
+  claims_ = text_.size();
+}
+
+void CertificateWriter::ask(const PlacedSurface& a, const Ray& b) {
+  drop_question_without_claim();
+  index_of(a.surface());
+  begin_question();
+  set_side(0, a);
+  const auto at = [&](double t) { return b.origin + t * b.direction; };
+  const bool ends = b.to < INFINITY;
+  sides_[1] = {.pieces = nullptr, .pose = {}, .points = {at(b.from)}, .direction = {}};
+  if (ends) {
+    sides_[1].points.push_back(at(b.to));
+  } else {
+    sides_[1].direction = b.direction;
+  }
+  text_ += "ray";
+  append_words(text_, b.origin.x, b.origin.y, b.origin.z, b.direction.x, b.direction.y, b.direction.z,
+               b.from);
+  if (ends) {
+    append_words(text_, b.to);
+  } else {
+    text_ += " inf";
+  }
+  text_ += '\n';
+  claims_ = text_.size();
+}
+
+Found CertificateWriter::apart(double margin) {
+  const std::size_t before = text_.size();
+  text_ += "apart ";
+  append_exactly(text_, margin);
+  text_ += '\n';
+  const Found found = append_separation(text_, sides_, margin, {max_leaves, monitor_});
+  if (found != Found::proof) text_.resize(before);
+  return found;
+}
+
+Found CertificateWriter::at_least(double lower) {
+  double largest = lower;
+  for (const CertifiedSide& side : sides_) {
+    for (const Point3& p : side.points) largest = std::max(largest, max_abs(p - Point3{}));
+    if (side.pieces == nullptr) continue;
+    for (const Point3& p : side.pieces->hull())
+      largest = std::max(largest, max_abs(side.pose.apply(p) - Point3{}));
+  }
+  const Found found = apart(std::max(0.0, lower - 0x1p-38 * largest));
+  if (found == Found::proof) return found;
+  for (const double share : {0.9, 0.5, 0.0}) {
+    if (apart(share * lower) == Found::proof) break;
+  }
+  return found;
+}
+
+Box3 CertificateWriter::append_place(std::size_t side, const Place& at) {
+  const CertifiedSurface& surface = *of_sides_[side];
+  const double wanted = place_size * surface.surface().size();
+  const std::vector<std::size_t> steps = surface.steps_to(at, max_place_steps);
+  std::unique_ptr<NetRange> piece = sides_[side].pieces->only(surface.position_of(at.owner));
+  Box3 box = placed_box(*piece, sides_[side].pose);
+  std::string taken;
+  std::size_t count = 0;
+  for (; count < steps.size() && longest_side(box) > wanted; ++count) {
+    piece = piece->finer().only(steps[count]);
+    box = placed_box(*piece, sides_[side].pose);
+    append_words(taken, steps[count]);
+  }
+  text_ += "on";
+  append_words(text_, surface.position_of(at.owner), count);
+  text_ += taken + '\n';
+  return box;
+}
+
+double CertificateWriter::near(double upper, const Place& a, const Place* b) {
+  const std::size_t before = text_.size();
+  const Box3 box_a = append_place(0, a);
+  Box3 box_b;
+  if (b != nullptr) {
+    box_b = append_place(1, *b);
+  } else {
+    text_ += "here\n";
+    box_b.add(sides_[1].points[0]);
+  }
+  const double noise = 0x1p-46 * (max_abs(box_a.upper - Point3{}) + max_abs(box_b.upper - Point3{}));
+  const double proved = std::max(upper, farthest(box_a, box_b) * (1 + 0x1p-48) + noise);
+  std::string claim = "near ";
+  append_exactly(claim, proved);
+  text_.insert(before, claim + '\n');
+  return proved;
+}
+
+bool CertificateWriter::meet(const Place& a, const Place* b) {
+  const auto name = [&](std::size_t side, const Place& at) {
+    const CertifiedSurface& surface = *of_sides_[side];
+    return PieceName{surface.position_of(at.owner), surface.steps_to(at, max_place_steps)};
+  };
+  return append_meeting(text_, sides_, {name(0, a), b ? std::optional(name(1, *b)) : std::nullopt}, monitor_);
+}
+
+std::string CertificateWriter::finished() {
+  drop_question_without_claim();
+  return has_claims_ ? std::move(text_) + "end\n" : std::string();
+}
+
+}  // namespace snug

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include <snug/certificate/net_range.h>
+
+namespace snug {
+
+/// One of the two sets of a question: pieces of a placed surface; or points and, of a half-line, where it goes.
+struct CertifiedSide {
+  NetRange* pieces = nullptr;
+  Motion pose;
+  std::vector<Point3> points;
+  std::optional<Vector3> direction;
+};
+
+/// What a search for a proof may cost, and what stops it.
+struct ProofLimits {
+  std::size_t leaves;
+  const WorkMonitor& monitor;
+};
+
+enum class Found : std::uint8_t {
+  proof,
+  too_many_leaves,
+  at_rounding,  ///< what remains cannot be told from a common point in doubles
+};
+
+/// Appends a tree that proves two sets to be more than `margin` apart, as docs/certificates.md has it. Without a proof
+/// what was appended is of no use. The tree is proved by who checks it: this is a search in double precision.
+[[nodiscard]] Found append_separation(std::string& text, const std::array<CertifiedSide, 2>& sides,
+                                      double margin, const ProofLimits& limits);
+
+/// Points as a direction sees them.
+struct Extent {
+  double least, largest;
+};
+[[nodiscard]] Extent extent_along(std::span<const Point3> points, const Vector3& w);
+
+[[nodiscard]] Box3 box_of(std::span<const Point3> points);
+[[nodiscard]] double largest_coordinate(std::span<const Point3> points);
+
+/// A direction of integers with `b` farther along than `a` by more than `margin`, and by more than rounding; nothing if
+/// none is found. `hint` is tried first, and is then the direction in which the two were separated best.
+[[nodiscard]] std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
+                                                                              std::span<const Point3> b,
+                                                                              double margin, Vector3& hint);
+
+}  // namespace snug
