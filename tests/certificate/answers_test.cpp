@@ -138,6 +138,28 @@ TEST(certificate, says_numbers_rounded_to_the_safe_side) {
   EXPECT_NE(sentence("3 near 4.35 here here").find("at most 4.3499999999999997"), std::string::npos);
 }
 
+// An edge below 1 of which both halves stay sharp, since its neighbours are sharper, is a full crease.
+TEST(certificate, of_a_blunt_edge_among_sharp_ones_by_chaikin) {
+  ControlMesh mesh = control_mesh(oracle::meshes::cube());
+  mesh.tags.crease_method = CreaseMethod::chaikin;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const VertexId> face = mesh.face(FaceId(f));
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      mesh.tags.creases.push_back({face[k], face[(k + 1) % face.size()], 2});
+    }
+  }
+  const std::array ends{mesh.face(FaceId(0u))[0], mesh.face(FaceId(0u))[1]};
+  mesh.tags.creases.push_back({ends[0], ends[1], 0.8});
+  const Surface surface(mesh, {.scheme = Scheme::catmark});
+  const Point3 &a = mesh.points[ends[0].index()], &b = mesh.points[ends[1].index()];
+  const Point3 middle = a + 0.5 * (b - a);
+  Certificate certificate;
+  static_cast<void>(closest_point(surface, Point3{3 * middle.x, 3 * middle.y, 3 * middle.z}, {},
+                                  {.certificate = &certificate}));
+  EXPECT_EQ(certificate.missing, "");
+  EXPECT_EQ(check(certificate.text).refused, "");
+}
+
 // The last tag of an edge counts, on the boundary too.
 TEST(certificate, of_boundary_edges_that_are_tagged_twice) {
   ControlMesh mesh = control_mesh(oracle::meshes::quad_grid(4, 4));
