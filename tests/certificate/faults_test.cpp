@@ -240,7 +240,7 @@ void plant_in_meshes(const Case& c, Tally& tally) {
 
 TEST(certificate_faults, that_make_a_claim_false_or_its_proof_incomplete_are_refused) {
   Tally tally;
-  for (const Case& c : cases(71, 40)) {
+  for (const Case& c : cases(71, fewer(40))) {
     ASSERT_EQ(check(text_of(c.lines)).refused, "") << c.name;
     plant_in_proof(c, tally);
     plant_in_claim(c, tally);
@@ -249,12 +249,13 @@ TEST(certificate_faults, that_make_a_claim_false_or_its_proof_incomplete_are_ref
   }
   for (const auto& [fault, count] : tally.planted) RecordProperty(fault, count);
   EXPECT_GE(tally.total, static_cast<int>(fewer(400)));
+  if (fewer(40) < 40) return;  // too few for every fault of a mesh
   for (const char* fault : {"a point moved", "creases left out", "another scheme"})
     EXPECT_GE(tally.planted[fault], 1) << fault;
 }
 
 TEST(certificate_faults, are_not_what_changes_nothing) {
-  for (const Case& c : cases(72, 20)) {
+  for (const Case& c : cases(72, fewer(20))) {
     const std::vector<std::size_t> leaves = leaves_of(c.lines);
     for (const std::size_t leaf : {leaves[0], leaves.back()}) {
       Lines lines = c.lines;
@@ -312,7 +313,7 @@ TEST(certificate_faults, of_common_points_are_refused) {
 TEST(certificate_faults, of_any_sort_end_in_an_answer) {
   std::mt19937_64 random(73);
   std::size_t refused = 0, total = 0;
-  const std::vector<Case> all = cases(74, 12);
+  const std::vector<Case> all = cases(74, fewer(12));
   for (const Case& c : all) {
     const std::string whole = text_of(c.lines);
     for (std::uint64_t trial = 0; trial < fewer(60); ++trial) {
