@@ -13,12 +13,6 @@ constexpr std::size_t max_leaves = 100'000;
 constexpr std::size_t max_place_steps = 400;  // of the name of a piece
 constexpr double place_size = 0x1p-40;        // of a piece, in sizes of its surface
 
-Box3 placed_box(const NetRange& range, const Motion& pose) {
-  Box3 box;
-  for (const Point3& p : range.hull()) box.add(pose.apply(p));
-  return box;
-}
-
 // No two points of the boxes are farther apart.
 double farthest(const Box3& a, const Box3& b) {
   Vector3 between;
@@ -139,10 +133,8 @@ Found CertificateWriter::apart(double margin) {
 Found CertificateWriter::at_least(double lower) {
   double largest = lower;
   for (const CertifiedSide& side : sides_) {
-    for (const Point3& p : side.points) largest = std::max(largest, max_abs(p - Point3{}));
-    if (side.pieces == nullptr) continue;
-    for (const Point3& p : side.pieces->hull())
-      largest = std::max(largest, max_abs(side.pose.apply(p) - Point3{}));
+    const std::vector<Point3> points = side.pieces != nullptr ? side.pieces->hull(side.pose) : side.points;
+    largest = std::max(largest, largest_coordinate(points));
   }
   const Found found = apart(std::max(0.0, lower - 0x1p-38 * largest));
   if (found == Found::proof) return found;
@@ -157,12 +149,12 @@ Box3 CertificateWriter::append_place(std::size_t side, const Place& at) {
   const double wanted = place_size * surface.surface().size();
   const std::vector<std::size_t> steps = surface.steps_to(at, max_place_steps);
   std::unique_ptr<NetRange> piece = sides_[side].pieces->only(surface.position_of(at.owner));
-  Box3 box = placed_box(*piece, sides_[side].pose);
+  Box3 box = box_of(piece->hull(sides_[side].pose));
   std::string taken;
   std::size_t count = 0;
   for (; count < steps.size() && longest_side(box) > wanted; ++count) {
     piece = piece->finer().only(steps[count]);
-    box = placed_box(*piece, sides_[side].pose);
+    box = box_of(piece->hull(sides_[side].pose));
     append_words(taken, steps[count]);
   }
   text_ += "on";

@@ -81,7 +81,7 @@ class Ladder {
     if (hulls_[level].empty()) {
       NetRange* range = pieces_[level].get();
       for (std::size_t i = 0; i < finer_steps; ++i) range = &range->finer();
-      hulls_[level] = placed(*range);
+      hulls_[level] = range->hull(pose_);
     }
     return hulls_[level];
   }
@@ -136,16 +136,10 @@ class Ladder {
  private:
   // Of the box around a piece; `size` becomes at least that of the box.
   [[nodiscard]] Point3 middle(const NetRange& range, double& size) const {
-    const Box3 box = box_of(placed(range));
+    const Box3 box = box_of(range.hull(pose_));
     size = std::max(size, longest_side(box));
     return box.lower + 0.5 * (box.upper - box.lower);
   }
-  [[nodiscard]] Points placed(const NetRange& range) const {
-    Points points = range.hull();
-    for (Point3& p : points) p = pose_.apply(p);
-    return points;
-  }
-
   [[nodiscard]] Points border(std::size_t level, std::size_t k) const {
     std::vector<std::pair<Piece, std::size_t>> along;
     along.emplace_back(pieces_[level]->only(0), k);
@@ -161,7 +155,7 @@ class Ladder {
     }
     Points points;
     for (const auto& [piece, side] : along) {
-      const Points own = placed(*piece);
+      const Points own = piece->hull(pose_);
       points.insert(points.end(), own.begin(), own.end());
     }
     return points;
@@ -342,9 +336,7 @@ class Places {
 
   [[nodiscard]] Points points_of(std::size_t side, const Node& node) const {
     if (!node.range) return sides_[side].points;
-    Points points = node.range->hull();
-    for (Point3& p : points) p = sides_[side].pose.apply(p);
-    return points;
+    return node.range->hull(sides_[side].pose);
   }
 
   // Towards the middle.

@@ -63,12 +63,12 @@ std::vector<HalfEdge> NetRange::faces_around(unsigned rings) const {
   return firsts;
 }
 
-std::vector<Point3> NetRange::hull() const {
+std::vector<Point3> NetRange::hull(const Motion& pose) const {
   std::vector<VertexId> names;
   vertices_of(net_->topology, faces_around(1), names);
   std::vector<Point3> points;
   points.reserve(names.size());
-  for (const VertexId v : names) points.push_back(net_->points[v.index()]);
+  for (const VertexId v : names) points.push_back(pose.apply(net_->points[v.index()]));
   return points;
 }
 

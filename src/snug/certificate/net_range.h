@@ -44,8 +44,8 @@ class NetRange {
   }
   /// Requires:  owner < size().
   [[nodiscard]] std::unique_ptr<NetRange> only(std::size_t owner) const;
-  /// Points whose hull contains the pieces.
-  [[nodiscard]] std::vector<Point3> hull() const;
+  /// Points whose hull contains the pieces, where they are placed.
+  [[nodiscard]] std::vector<Point3> hull(const Motion& pose) const;
   /// Corners of the only owner: of a face, or faces around a vertex.
   [[nodiscard]] std::size_t corner_count() const;
   [[nodiscard]] bool dual() const;

@@ -159,10 +159,7 @@ class Search {
   const std::vector<Point3>& points_of(std::size_t side, const NetRange* range) {
     if (range == nullptr) return sides_[side].points;
     const auto [known, is_new] = placed_[side].try_emplace(range);
-    if (is_new) {
-      known->second = range->hull();
-      for (Point3& p : known->second) p = sides_[side].pose.apply(p);
-    }
+    if (is_new) known->second = range->hull(sides_[side].pose);
     return known->second;
   }
 
