@@ -44,7 +44,7 @@ TEST(certificate, holds_what_answers_about_pairs_say) {
   RecordProperty("files", static_cast<int>(tally.files));
   RecordProperty("meetings", static_cast<int>(tally.meetings));
   RecordProperty("proved meetings", static_cast<int>(tally.proved_meetings));
-  EXPECT_GE(tally.files, fewer(150));
+  EXPECT_GE(tally.files, fewer(90));
   EXPECT_GE(4 * tally.proved_meetings, 3 * tally.meetings);
 }
 
