@@ -26,13 +26,14 @@ struct Spoke {
 
 // Masks of smooth vertices and edges. All weights are at least 0, and sum to 1.
 
-/// Loop's scheme [Loop87]: (1 - a) v + a mean(ring), a = 5/8 - (3 + 2 cos(2 pi/n))^2 / 64; 3/8 of the ends
-/// and 1/8 of the vertices across.
+/// Loop's scheme [Loop87]: (1 - a) v + a mean(ring), a = 5/8 - (3 + 2 cos(2 pi/n))^2 / 64; 3/8 of
+/// the ends and 1/8 of the vertices across.
 [[nodiscard]] Point loop_vertex(const Net& net, Index v, std::span<const Spoke> spokes);
 [[nodiscard]] Point loop_edge(const Net& net, Index edge);
 
-/// Catmull-Clark [CatmullClark78]: (n - 2)/n v + mean(ends)/n + mean(face means)/n; (1 - 2 f)/2 of the ends
-/// and f of the means of both faces, f = 1/4, with smooth triangles half of 0.47 for each triangle.
+/// Catmull-Clark [CatmullClark78]: (n - 2)/n v + mean(ends)/n + mean(face means)/n; (1 - 2 f)/2 of
+/// the ends and f of the means of both faces, f = 1/4, with smooth triangles half of 0.47 for each
+/// triangle.
 [[nodiscard]] Point catmark_vertex(const Net& net, Index v, std::span<const Spoke> spokes,
                                    const std::vector<const Point*>& means);
 [[nodiscard]] Point catmark_edge(const Net& net, Index edge,

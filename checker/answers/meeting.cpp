@@ -1,6 +1,7 @@
 #include "question.h"
 
-// Two surfaces cross: docs/derivations/contact.md, "A piece that is crossed", by hulls and directions.
+// Two surfaces cross: docs/derivations/contact.md, "A piece that is crossed", by hulls and
+// directions.
 namespace answers {
 namespace {
 
@@ -26,7 +27,8 @@ int side_of(const Point& a, const Point& p, const Point& q, const Point& r) {
   return sign_of(determinant(between(a, p), between(a, q), between(a, r)));
 }
 
-// A disc, a piece of one side, and a connected set of the other one, a piece or a segment, that is said to cross it.
+// A disc, a piece of one side, and a connected set of the other one, a piece or a segment, that is
+// said to cross it.
 class Meeting {
  public:
   Meeting(Words& words, const std::array<Side, 2>& sides) : words_(words) {
@@ -48,12 +50,13 @@ class Meeting {
     crossing_hull_ = read_finer(*crossing_);
   }
 
-  // Refuses unless the disc and the crossing piece, a connected set, have a point in common. If not, the
-  // map (u, t) -> disc(u) - path(t), for a path between two points of the crossing piece, has no zero. On
-  // the border of disc x [0, 1] it is deformed without a zero: the path to the segment between its ends,
-  // since no border curve meets the hull of the crossing piece; the disc to the triangles between its
-  // corners, since the ends are outside of its hull. The degree of the result is the number of crossings
-  // of the segment with the triangles, which is 1 or -1; that of a map without zeros is 0.
+  // Refuses unless the disc and the crossing piece, a connected set, have a point in common. If
+  // not, the map (u, t) -> disc(u) - path(t), for a path between two points of the crossing piece,
+  // has no zero. On the border of disc x [0, 1] it is deformed without a zero: the path to the
+  // segment between its ends, since no border curve meets the hull of the crossing piece; the disc
+  // to the triangles between its corners, since the ends are outside of its hull. The degree of the
+  // result is the number of crossings of the segment with the triangles, which is 1 or -1; that of
+  // a map without zeros is 0.
   void prove() {
     std::array<Point, 2> ends;
     for (std::size_t i = 0; i < 2; ++i) {

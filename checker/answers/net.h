@@ -54,8 +54,8 @@ struct Net {
   std::vector<double> vertex_sharpness;  ///< empty in linear and dual schemes, as above
   /// With Chaikin's rule: sharpnesses of the semi-sharp edges at each vertex, rising.
   std::vector<std::vector<double>> semi_sharp;
-  /// Whose pieces make the surface: faces; of a dual scheme corners, one at each vertex, in the face
-  /// that is counted first around it.
+  /// Whose pieces make the surface: faces; of a dual scheme corners, one at each vertex, in the
+  /// face that is counted first around it.
   std::vector<Index> owners;
 
   // Made from those above.
@@ -86,11 +86,12 @@ struct Net {
 [[nodiscard]] std::vector<Index> hull_of(const Net& net, std::span<const Index> owners,
                                          const Rules& rules);
 
-/// One step of subdivision of all that determines the surface of these owners. The pieces of an owner
-/// follow each other: of a triangle those at its corners and the middle, of other faces those at their
-/// corners, of a vertex those in its faces, counter-clockwise from the first. In a piece of a triangle or
-/// quad the corner that it keeps is the same one; of other faces it is the first; the face that is counted
-/// first around a new vertex of a dual scheme is that inside of the face before.
+/// One step of subdivision of all that determines the surface of these owners. The pieces of an
+/// owner follow each other: of a triangle those at its corners and the middle, of other faces those
+/// at their corners, of a vertex those in its faces, counter-clockwise from the first. In a piece
+/// of a triangle or quad the corner that it keeps is the same one; of other faces it is the first;
+/// the face that is counted first around a new vertex of a dual scheme is that inside of the face
+/// before.
 [[nodiscard]] Net refined(const Net& net, std::span<const Index> owners, const Rules& rules);
 
 }  // namespace answers

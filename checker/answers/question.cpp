@@ -39,8 +39,8 @@ bool goes_back(const Side& side, const Point& w, bool largest) {
   return !(largest ? Real(0.0) - along : along).certainly_at_least(Real(0.0));
 }
 
-// A tree over pairs of sets, children in turn behind their parent: `A` and `B` halve a set, `a` and `b` make
-// it finer, and three integers are the direction of a leaf.
+// A tree over pairs of sets, children in turn behind their parent: `A` and `B` halve a set, `a` and
+// `b` make it finer, and three integers are the direction of a leaf.
 void prove_apart(Words& words, std::array<Side, 2>& sides, double margin, LeastSlack& least) {
   std::vector<Pair> open{{sides[0].pieces, sides[1].pieces}};
   while (!open.empty()) {

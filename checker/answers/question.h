@@ -36,19 +36,20 @@ struct LeastSlack {
   std::size_t line = 0;  ///< 0: there is no leaf
 };
 
-/// Proves a claim about two sets that a file makes next, and says it as the end of a sentence. What is
-/// not proved is thrown as checker::Rejected.
+/// Proves a claim about two sets that a file makes next, and says it as the end of a sentence. What
+/// is not proved is thrown as checker::Rejected.
 [[nodiscard]] std::string prove_claim(Words& words, std::array<Side, 2>& sides, LeastSlack& least);
 
 [[nodiscard]] Real dot(const Point& a, const Point& b);
-/// Reads the name of one piece: its owner's position in the order, the number of steps, and which child is
-/// taken in each.
+/// Reads the name of one piece: its owner's position in the order, the number of steps, and which
+/// child is taken in each.
 [[nodiscard]] std::unique_ptr<PieceSet> read_piece(Words& words, const PieceSet& all);
 /// The number of further steps, and these.
 void read_steps(Words& words, std::unique_ptr<PieceSet>& piece);
 /// Contains all points of a placed piece.
 [[nodiscard]] Point enclosing_box(PieceSet& piece, const Pose& pose);
-/// Encloses a point of a side: of a surface one in a piece that is named, or the point that the side is.
+/// Encloses a point of a side: of a surface one in a piece that is named, or the point that the
+/// side is.
 [[nodiscard]] Point read_place(Words& words, const Side& side);
 /// Three integers.
 [[nodiscard]] Point read_direction(Words& words);

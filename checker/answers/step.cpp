@@ -16,8 +16,8 @@ class Step {
  public:
   Step(const Net& net, const Rules& rules) : net_(net), rules_(rules) {}
 
-  // Every new point, and all sharpness, that decides about the pieces of these faces: what is new at
-  // their vertices, on edges at these and in faces at these. So it is of the pieces in turn.
+  // Every new point, and all sharpness, that decides about the pieces of these faces: what is new
+  // at their vertices, on edges at these and in faces at these. So it is of the pieces in turn.
   Net around_faces(std::span<const Index> owners) {
     for (const Index f : owners) {
       for (const Index v : net_.faces[f]) core_[v] = true;
@@ -112,7 +112,8 @@ class Step {
     out_.sharpness.push_back(sharpness);
   }
 
-  // From the corner along its edge, over the middle of the face, and back; it is counted as number `at`.
+  // From the corner along its edge, over the middle of the face, and back; it is counted as number
+  // `at`.
   void add_corner_piece(Index corner, Index at) {
     const Index v = net_.vertex(corner), before = net_.prev(corner);
     const Index ahead = net_.edge[corner], behind = net_.edge[before];

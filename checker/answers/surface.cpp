@@ -288,7 +288,7 @@ std::unique_ptr<PieceSet> PieceSet::only(Index owner) const {
 
 PieceSet& PieceSet::finer() {
   if (finer_) return *finer_;
-  // A step makes at most four points for each corner of the faces around.
+  // About what a step makes, known before it is made.
   std::size_t corners = 0;
   for (const Index v : hull_of(*net_, owners(), surface_.rules))
     corners += net_->at_vertex[v].size();

@@ -15,12 +15,14 @@ struct Surface {
   std::string name;  ///< the scheme, the numbers of points and faces, and a digest of its lines
 };
 
-/// Reads a surface, of so many points at most: rules, points, faces, tags, and an order of its owners that names each once.
+/// Reads a surface, of so many points at most: rules, points, faces, tags, and an order of its
+/// owners that names each once.
 [[nodiscard]] std::unique_ptr<Surface> read_surface(Words& words, std::size_t most_points);
 
-/// A set of pieces of a surface: owners of a net that follow each other. Halves and finer sets are made
-/// when they are first asked for. `points_left` is what all sets may still make, in points of half a kilobyte; what needs more is thrown
-/// as checker::Rejected, and so are sets that are divided too often.
+/// A set of pieces of a surface: owners of a net that follow each other. Halves and finer sets are
+/// made when they are first asked for. `points_left` is what all sets may still make, in points of
+/// half a kilobyte; what needs more is thrown as checker::Rejected, and so are sets that are
+/// divided too often.
 class PieceSet {
  public:
   PieceSet(const Surface& surface, std::shared_ptr<const Net> net, Index begin, Index end,
@@ -53,7 +55,6 @@ class PieceSet {
   }
   [[nodiscard]] const Net& net() const { return *net_; }
   [[nodiscard]] const Rules& rules() const { return surface_.rules; }
-  [[nodiscard]] const Surface& surface() const { return surface_; }
 
  private:
   void take(std::size_t points);
