@@ -80,7 +80,7 @@ notebooks: python  ## executes the notebooks: build/notebooks
 	@scripts/run_notebooks "$$PWD/build/$(python_preset)/python" "$$PWD/build/notebooks"
 
 python-asan: install-packages  ## the tests of the Python module under address and undefined-behaviour sanitizer
-	@$(call build,asan,snug_python)
+	@$(call build,asan,snug_python snug_check)
 	@$(ctest) --preset asan -L python
 
 build:  ## the library, the command, the tests: build/release

@@ -13,6 +13,8 @@ import snug
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MODELS = ROOT / "examples/models"
+# The environment of programs: without the sanitizer's runtime that Python needs before it, as they have their own.
+PROGRAMS = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
 
 hypothesis.configuration.set_hypothesis_home_dir(tempfile.gettempdir())
 

@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from conftest import moved
+from conftest import PROGRAMS, moved
 
 import snug
 
@@ -16,7 +16,7 @@ def verified(path):
     program = os.environ.get("SNUG_CHECK")
     if program is None:
         pytest.skip("snug-check was not built")
-    done = subprocess.run([program, str(path)], capture_output=True, text=True, check=False)
+    done = subprocess.run([program, str(path)], capture_output=True, text=True, check=False, env=PROGRAMS)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
 

@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 import snug
-from conftest import MODELS, ROOT, moved, turned
+from conftest import MODELS, PROGRAMS, ROOT, moved, turned
 
 COMMAND = os.environ.get("SNUG_COMMAND", str(ROOT / "build/release/bin/snug"))
-# Without the sanitizer's runtime that Python needs before it: the command has its own.
-ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
 pytestmark = pytest.mark.skipif(not os.path.exists(COMMAND), reason="the command is not built")
 
 PAIRS = [("bracket", "pin"), ("pawn", "bust"), ("ring", "star")]
@@ -21,7 +19,7 @@ POSES = [moved(), moved(0, 0, 0.5), turned(135, 0.05, 0.05, 0.5), turned(17, 1.1
 
 def output_of(*words, stdin=None):
     done = subprocess.run([COMMAND, *map(str, words), "--json", "--quiet"], capture_output=True, text=True, input=stdin,
-                          env=ENVIRONMENT)
+                          env=PROGRAMS)
     assert done.stdout, done.stderr
     return json.loads(done.stdout)
 
