@@ -15,12 +15,17 @@ CertificateFile::CertificateFile(const CommonOptions& options)
   if (!name_.empty()) file_.emplace(name_);
 }
 
-void CertificateFile::add_to(std::vector<AtomicFile*>& files) {
+void CertificateFile::add_to(Report& report, std::vector<AtomicFile*>& files) {
   if (!file_) return;
   const bool none = certificate_.text.empty();
   if (notes_ && !certificate_.missing.empty()) {
     notes_(name_ + (none ? ": not written, there is no proof of " : ": does not prove ") +
            certificate_.missing);
+  }
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.key("certificate").begin_object().field("file", none ? "" : name_);
+    json.field("missing", certificate_.missing).end_object();
   }
   if (none) {
     file_.reset();

@@ -20,9 +20,11 @@ class CertificateFile {
 
   /// The same run, whose answers are proved.
   [[nodiscard]] Run with(Run run) { return run.certificate = file_ ? &certificate_ : nullptr, run; }
-  /// Writes the proof and adds the file to those that a report puts in place.
+  [[nodiscard]] bool wanted() const { return file_.has_value(); }
+  /// Writes the proof and adds the file to those that a report puts in place, and its name and what it does not prove to the
+  /// report's document.
   /// Notes:     one line for what it does not prove.
-  void add_to(std::vector<AtomicFile*>& files);
+  void add_to(Report& report, std::vector<AtomicFile*>& files);
 
  private:
   Notes notes_;

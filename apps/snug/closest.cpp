@@ -157,7 +157,7 @@ ExitStatus finish_with_table(Report& report, const Options& options, const Surfa
   report.text(fmt::format("{}: {} closest points{}", options.output, results.size(),
                           missed == 0 ? "" : fmt::format(", {} wider than asked for", missed)));
   std::vector<AtomicFile*> files{&file};
-  certificate.add_to(files);
+  certificate.add_to(report, files);
   return report.finish(missed == 0, files);
 }
 
@@ -191,7 +191,7 @@ ExitStatus run(const Options& options) {
   const bool reached = write_results(report, surface, results);
   if (report.json()) report.write().end_array();
   std::vector<AtomicFile*> files;
-  certificate.add_to(files);
+  certificate.add_to(report, files);
   return report.finish(reached, files);
 }
 
@@ -212,7 +212,7 @@ Command closest_command() {
       .between(0, 1);
   list.add(Group::own, "--signed", &options->with_sign,
            "Signed distances to a closed surface, negative inside; the sign is proved");
-  add_certificate_option(list, *options).excludes("--signed");
+  add_certificate_option(list, *options);
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"closest",

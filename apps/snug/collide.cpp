@@ -112,7 +112,14 @@ ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report
         .row = row(answer),
         .reached = answer.verdict != Verdict::undecided};
   };
-  return answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask, monitor);
+  CertificateFile certificate(options);
+  const ProvePoses prove = [&](const std::vector<PosePair>& poses, std::vector<AtomicFile*>& files) {
+    static_cast<void>(collide(pair.a().surface(), pair.b().surface(), poses, wanted,
+                              certificate.with(run_of(options, monitor))));
+    certificate.add_to(report, files);
+  };
+  return answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask,
+                      certificate.wanted() ? prove : ProvePoses(), monitor);
 }
 
 void require_curves(const Options& options) {
@@ -147,6 +154,9 @@ ExitStatus run_scene(const Options& options) {
   const SceneText& text = run.loaded().text;
   const Length tolerance = text.tolerance.value_or(parse_length(options.tolerance, "--tolerance", true));
   const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
+  CertificateFile certificate(options);
+  if (certificate.wanted()) run.require_alone();
+  KeptAnswers<PairCollision> proved;
   SceneQuestion question;
   question.key =
       fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.max_splits);
@@ -157,8 +167,17 @@ ExitStatus run_scene(const Options& options) {
     CollideOptions wanted;
     wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
     wanted.solid = options.solid;
-    write_to(collide(run.scene(), pair, wanted, run_of(options, quiet, &workspace)), run, pair, answer, json);
+    const Collision found = collide(run.scene(), pair, wanted, run_of(options, quiet, &workspace));
+    if (certificate.wanted()) proved.add({pair.parts, found});
+    write_to(found, run, pair, answer, json);
   };
+  if (certificate.wanted()) {
+    question.prove = [&](Report& report, std::vector<AtomicFile*>& files) {
+      const CollideOptions wanted{.margin = text.margin, .solid = options.solid};
+      certify(run.scene(), wanted, proved.all(), certificate.with(run_of(options, quiet)));
+      certificate.add_to(report, files);
+    };
+  }
   question.separated = [&](const ScenePair& pair, SceneAnswer& answer, JsonWriter* json) {
     Collision apart;
     apart.verdict = Verdict::separated;
@@ -231,7 +250,7 @@ ExitStatus run(const Options& options) {
     note_nesting(options, pair.a(), pair.b(), monitor);
   std::vector<AtomicFile*> files;
   if (curves) files.push_back(&*curves);
-  certificate.add_to(files);
+  certificate.add_to(report, files);
   const ExitStatus status =
       report.finish(answer.verdict != Verdict::undecided && (!depth || depth->outcome == Outcome::complete) &&
                         (!all || all->outcome == Outcome::complete),
@@ -276,7 +295,7 @@ Command collide_command() {
   list.at("--tolerance").excludes("--scene");
   list.at("--margin").excludes("--scene");
   add_pair_options(list, *options);
-  add_certificate_option(list, *options).excludes("--scene").excludes("--poses").excludes("--penetration");
+  add_certificate_option(list, *options).excludes("--penetration").excludes("--resume");
   list.add(Group::own, "--all-pairs", &options->all_pairs,
            "Also list the pairs of a scene that are separated by the boxes around its parts")
       .needs("--scene");

@@ -46,7 +46,14 @@ ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report
         .row = row(answer),
         .reached = answer.outcome == Outcome::complete};
   };
-  return answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
+  CertificateFile certificate(options);
+  const ProvePoses prove = [&](const std::vector<PosePair>& poses, std::vector<AtomicFile*>& files) {
+    static_cast<void>(distance(pair.a().surface(), pair.b().surface(), poses, wanted,
+                               certificate.with(run_of(options, monitor))));
+    certificate.add_to(report, files);
+  };
+  return answer_poses(pair, report, "lower upper ax ay az bx by bz", ask,
+                      certificate.wanted() ? prove : ProvePoses(), monitor);
 }
 
 ExitStatus run_scene(const Options& options) {
@@ -59,6 +66,9 @@ ExitStatus run_scene(const Options& options) {
   SceneRun run(options, monitor);
   if (options.solid) run.require_closed();
   const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
+  CertificateFile certificate(options);
+  if (certificate.wanted()) run.require_alone();
+  KeptAnswers<PairDistance> proved;
   SceneQuestion question;
   question.key = fmt::format("{} {} {} {} {}", precision.number, precision.percent, options.relative,
                              options.solid, options.max_splits);
@@ -72,6 +82,7 @@ ExitStatus run_scene(const Options& options) {
     wanted.solid = options.solid;
     const std::optional<Distance> found =
         distance(run.scene(), pair, wanted, run_of(options, quiet, &workspace));
+    if (found && certificate.wanted()) proved.add({pair.parts, *found});
     if (!found) {
       answer.verdict = Verdict::separated;
       return;
@@ -81,6 +92,13 @@ ExitStatus run_scene(const Options& options) {
     answer.row = row(*found);
     if (json) write_answer(*json, run.sides_of(pair.parts), *found);
   };
+  if (certificate.wanted()) {
+    question.prove = [&](Report& report, std::vector<AtomicFile*>& files) {
+      const DistanceOptions wanted{.solid = options.solid};
+      certify(run.scene(), limit.number, wanted, proved.all(), certificate.with(run_of(options, quiet)));
+      certificate.add_to(report, files);
+    };
+  }
   question.head = [&](JsonWriter& json) {
     json.field("limit", limit.number).key("absolute");
     precision.percent ? json.value(fmt::format("{}%", precision.number)) : json.value(precision.number);
@@ -128,7 +146,7 @@ ExitStatus run(const Options& options) {
   }
   if (answer.distance.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
   std::vector<AtomicFile*> files;
-  certificate.add_to(files);
+  certificate.add_to(report, files);
   return report.finish(answer.outcome == Outcome::complete, files);
 }
 
@@ -146,7 +164,7 @@ Command distance_command() {
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: 0 if one is inside the other");
   add_pair_options(list, *options);
-  add_certificate_option(list, *options).excludes("--scene").excludes("--poses");
+  add_certificate_option(list, *options).excludes("--resume");
   list.add(Group::own, "--limit LENGTH", &options->limit,
            "List the pairs of a scene that are at most this far apart; mesh units")
       .needs("--scene");

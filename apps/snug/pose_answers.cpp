@@ -14,6 +14,7 @@ namespace snug::command {
 namespace {
 
 struct Item {
+  PosePair poses;
   std::string json, row;
   bool reached = true;
   std::optional<double> mended;
@@ -54,8 +55,12 @@ std::string json_of(const PoseAnswer& answer, const PosePair& poses, std::size_t
 
 class PoseAnswers {
  public:
-  PoseAnswers(PairArguments& pair, Report& report, const AskPose& ask)
-      : pair_(pair), report_(report), ask_(ask), workers_(Workspace::of_this_thread(), pair.threads()) {}
+  PoseAnswers(PairArguments& pair, Report& report, const AskPose& ask, bool keeps_poses)
+      : pair_(pair),
+        report_(report),
+        ask_(ask),
+        keeps_poses_(keeps_poses),
+        workers_(Workspace::of_this_thread(), pair.threads()) {}
 
   // Answers for some lines, one after the other where they are written, in parallel before that.
   void answer(const PoseFile& file, const std::vector<PoseLine>& lines, const WorkMonitor& monitor) {
@@ -73,6 +78,7 @@ class PoseAnswers {
 
   void finish(const PoseFile& file) const { mended_.report(pair_.notes(), file.name()); }
   [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] const std::vector<PosePair>& poses() const { return poses_; }
   [[nodiscard]] bool reached() const { return reached_; }
 
  private:
@@ -82,7 +88,8 @@ class PoseAnswers {
     const PosePair poses{read.a.value_or(pair_.a().pose()), read.b.value_or(pair_.b().pose())};
     const PoseAnswer answer =
         ask_(pair_.a().surface().at(poses.a), pair_.b().surface().at(poses.b), workspace);
-    return {.json = report_.json() ? json_of(answer, poses, line.number) : "",
+    return {.poses = poses,
+            .json = report_.json() ? json_of(answer, poses, line.number) : "",
             .row = fmt::format("{} {}", line.number, answer.row),
             .reached = answer.reached,
             .mended = read.defect,
@@ -99,11 +106,14 @@ class PoseAnswers {
     mended_.add(item, line);
     reached_ = reached_ && item.reached;
     ++count_;
+    if (keeps_poses_) poses_.push_back(item.poses);
   }
 
   PairArguments& pair_;
   Report& report_;
   const AskPose& ask_;
+  bool keeps_poses_;
+  std::vector<PosePair> poses_;
   Workers<Workspace> workers_;
   std::vector<Item> items_;
   Mended mended_;
@@ -114,9 +124,9 @@ class PoseAnswers {
 }  // namespace
 
 ExitStatus answer_poses(PairArguments& pair, Report& report, const std::string& header, const AskPose& ask,
-                        const WorkMonitor& monitor) {
+                        const ProvePoses& prove, const WorkMonitor& monitor) {
   PoseFile file(pair.poses(), monitor);
-  PoseAnswers answers(pair, report, ask);
+  PoseAnswers answers(pair, report, ask, bool(prove));
   if (report.json()) report.write().key("results").begin_array();
   report.text("# line " + header);
   for (std::vector<PoseLine> lines = file.next(monitor); !lines.empty(); lines = file.next(monitor)) {
@@ -125,7 +135,9 @@ ExitStatus answer_poses(PairArguments& pair, Report& report, const std::string& 
   }
   answers.finish(file);
   if (report.json()) report.write().end_array().field("count", answers.count());
-  return report.finish(answers.reached());
+  std::vector<AtomicFile*> files;
+  if (prove) prove(answers.poses(), files);
+  return report.finish(answers.reached(), files);
 }
 
 }  // namespace snug::command

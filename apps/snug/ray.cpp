@@ -124,7 +124,7 @@ ExitStatus run(const Options& options) {
   }
   if (report.json()) report.write().end_array();
   std::vector<AtomicFile*> files;
-  certificate.add_to(files);
+  certificate.add_to(report, files);
   return report.finish(all_decided, files);
 }
 

@@ -299,7 +299,7 @@ class Results {
     flushed_ = now;
   }
 
-  ExitStatus finish(std::uint64_t pairs, bool exit_code) {
+  ExitStatus finish(const SceneQuestion& question, std::uint64_t pairs, bool exit_code) {
     std::uint64_t answered = 0;
     for (const std::uint64_t count : verdicts_) answered += count;
     const std::uint64_t boxes = pairs - answered;
@@ -314,7 +314,9 @@ class Results {
       if (verdicts_[i] > 0) sentence += fmt::format(", {} {}", verdicts_[i], verdict);
     }
     report_.text(sentence);
-    const ExitStatus status = report_.finish(reached_);
+    std::vector<AtomicFile*> files;
+    if (question.prove) question.prove(report_, files);
+    const ExitStatus status = report_.finish(reached_, files);
     if (!exit_code) return status;
     const auto some = [&](Verdict verdict) { return verdicts_[static_cast<std::size_t>(verdict)] > 0; };
     return some(Verdict::intersecting) ? ExitStatus::intersecting
@@ -377,6 +379,12 @@ void SceneRun::require_closed() const {
     for (std::size_t i = 0; i < loaded_.surfaces.size(); ++i) {
       naming(loaded_.text.meshes[i].file, [&] { command::require_closed(loaded_.surfaces[i]); });
     }
+  });
+}
+
+void SceneRun::require_alone() const {
+  reported_once([&] {
+    if (ranks_) throw InputError(InputProblem::refused, "--certificate does not work with mpirun");
   });
 }
 
@@ -534,7 +542,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
     results.flush();
     before = now.share;
   }
-  const ExitStatus status = results.finish(broad.pair_count(), exit_code);
+  const ExitStatus status = results.finish(question, broad.pair_count(), exit_code);
   if (ranks_) {
     // Ranks that have not yet reported are waited for.
     while (idle.size() + 1 < static_cast<std::size_t>(ranks_->size())) {

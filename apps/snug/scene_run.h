@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,24 @@ struct SceneQuestion {
   /// The same for a pair that is separated by its boxes; with all_pairs.
   std::function<void(const ScenePair&, SceneAnswer&, JsonWriter* json)> separated;
   std::function<void(JsonWriter&)> head;  ///< writes what stands in front of the results
+  /// Proves the answers, if they are to be proved, and adds the file of the proof.
+  std::function<void(Report&, std::vector<AtomicFile*>&)> prove;
+};
+
+/// Answers that are to be proved, of all threads.
+template <class PairAnswer>
+class KeptAnswers {
+ public:
+  void add(PairAnswer answer) {
+    const std::lock_guard lock(mutex_);
+    answers_.push_back(std::move(answer));
+  }
+  /// When all threads are done.
+  [[nodiscard]] const std::vector<PairAnswer>& all() const { return answers_; }
+
+ private:
+  std::mutex mutex_;
+  std::vector<PairAnswer> answers_;
 };
 
 /// A command about a scene: on this process's threads, or on all that mpirun started, of which rank 0 reads files, deals out
@@ -45,6 +64,9 @@ class SceneRun {
   /// For --solid.
   /// Errors:    InputError (refused) that names the mesh which is not closed.
   void require_closed() const;
+  /// For --certificate.
+  /// Errors:    InputError (refused) under mpirun, whose ranks do not send what proofs need.
+  void require_alone() const;
   /// The larger size of both parts.
   [[nodiscard]] double size_of(const PartPair& parts) const;
   [[nodiscard]] Sides sides_of(const PartPair& parts) const;

@@ -105,18 +105,41 @@ class File {
   }
 
   void check_question() {
-    std::array<Side, 2> sides{read_side(), read_side()};
-    std::string claims;
-    while (words_.peek() != "question" && words_.peek() != "surface" && words_.peek() != "end") {
-      claims += (claims.empty() ? "" : ", and ") + prove_claim(words_, sides, least_);
-    }
-    if (claims.empty()) words_.refuse("a question without a claim");
+    const bool is_scene = words_.take("scene");
+    is_scene ? check_scene() : check_pair();
     if (points_left_ < most_points_ / 2) {  // what earlier questions needed may be of no use
       for (const auto& all : all_) all->forget();
     }
-    proved_.push_back(sides[0].name + " and " + sides[1].name + " " + claims);
   }
 
+  void check_pair() {
+    Question question;
+    for (Side& side : question.sides) side = read_side();
+    proved_.push_back(question.sides[0].name + " and " + question.sides[1].name + ' ' +
+                      prove_claims(words_, question, least_));
+  }
+
+  void check_scene() {
+    const std::size_t begin = words_.position() - std::string_view("scene").size();
+    std::vector<Side> parts;
+    for (Index left = words_.count(most_parts); left > 0; --left) {
+      if (words_.peek() != "placed") words_.refuse("a part that is no placed surface");
+      parts.push_back(read_side());
+    }
+    if (parts.empty()) words_.refuse("no parts");
+    std::string name = "scene of " + std::to_string(parts.size()) + " parts, sha256 " +
+                       sha256(words_.up_to_next(begin)) + ", of";
+    for (std::size_t i = 0; i < surfaces_.size(); ++i)
+      name += " surface " + std::to_string(i) + " (" + surfaces_[i]->name + ")";
+    const std::vector<std::string> sentences = prove_scene(words_, parts, least_);
+    if (sentences.empty()) words_.refuse("a scene without a claim");
+    for (const std::string& sentence : sentences) {
+      proved_.push_back(name + ": " + sentence);
+      name = "in this scene";
+    }
+  }
+
+  static constexpr Index most_parts = 1U << 20;
   Words words_;
   std::size_t points_left_, most_points_ = 0;  // most: when no set has made any
   std::vector<std::unique_ptr<Surface>> surfaces_;

@@ -1,6 +1,6 @@
-#include "question.h"
+#include "tree.h"
 
-#include <cctype>
+#include <algorithm>
 #include <cstdio>
 
 namespace answers {
@@ -8,7 +8,8 @@ namespace {
 
 constexpr Index max_steps = 1000;
 
-// As decimals that are not above it, or not below.
+}  // namespace
+
 std::string text_of(double x, bool above) {
   std::array<char, 40> text{};
   mpfr_t exact;
@@ -19,70 +20,19 @@ std::string text_of(double x, bool above) {
   return text.data();
 }
 
-// Of the two sets, what is left to separate.
-using Pair = std::array<PieceSet*, 2>;
-
-// The least or largest w.x of what is left of a side.
-Real extreme_of(const Side& side, PieceSet* pieces, const Point& w, bool largest) {
-  if (pieces) return extreme(pieces->hull(), side.pose, w, largest);
-  Real value = dot(w, side.points[0]);
-  for (const Point& p : side.points) {
-    value = largest ? max(value, dot(w, p)) : min(value, dot(w, p));
-  }
-  return value;
-}
-
-// Does a half-line leave the side of the plane that its points are on?
-bool goes_back(const Side& side, const Point& w, bool largest) {
-  if (!side.direction) return false;
-  const Real along = dot(w, *side.direction);
-  return !(largest ? Real(0.0) - along : along).certainly_at_least(Real(0.0));
-}
-
-// A tree over pairs of sets, children in turn behind their parent: `A` and `B` halve a set, `a` and
-// `b` make it finer, and three integers are the direction of a leaf.
-void prove_apart(Words& words, std::array<Side, 2>& sides, double margin, LeastSlack& least) {
-  std::vector<Pair> open{{sides[0].pieces, sides[1].pieces}};
-  while (!open.empty()) {
-    Pair pair = open.back();
-    open.pop_back();
-    while (!words.peek().empty() &&
-           std::isalpha(static_cast<unsigned char>(words.peek()[0])) != 0) {
-      for (const char step : words.next()) {
-        const std::size_t s = step == 'A' || step == 'a' ? 0 : step == 'B' || step == 'b' ? 1 : 2;
-        if (s == 2) words.refuse("a step that is none");
-        if (!pair[s]) words.refuse("a point or a ray is not divided");
-        if (step == 'a' || step == 'b') {
-          pair[s] = &pair[s]->finer();
-          continue;
-        }
-        if (pair[s]->size() < 2) words.refuse("one piece is not halved");
-        open.push_back(pair);
-        open.back()[s] = &pair[s]->half(1);
-        pair[s] = &pair[s]->half(0);
-      }
-    }
-    const Point w = read_direction(words);
-    if (goes_back(sides[0], w, true) || goes_back(sides[1], w, false)) {
-      words.refuse("a ray crosses the plane of this leaf");
-    }
-    const Real gap =
-        extreme_of(sides[1], pair[1], w, false) - extreme_of(sides[0], pair[0], w, true);
-    const Real length = dot(w, w).root(), slack = gap - Real(margin) * length;
-    if (!slack.certainly_positive())
-      words.refuse("these pieces are not separated by this direction");
-    const double share = (slack / length).approximately();
-    if (least.line == 0 || share < least.slack) least = {share, words.line()};
-  }
-}
+namespace {
 
 void prove_near(Words& words, const std::array<Side, 2>& sides, double upper) {
-  const Point a = read_place(words, sides[0]), b = read_place(words, sides[1]);
+  const Point a = read_place(words, sides[0]).box, b = read_place(words, sides[1]).box;
   const Point between{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
   Real sum = 0.0;
   for (const Real& x : between) sum += x.magnitude() * x.magnitude();
   if (!(Real(upper) * Real(upper)).certainly_at_least(sum))
     words.refuse("these points are not that near");
+}
+
+std::unique_ptr<PieceSet> read_owner(Words& words, const PieceSet& all) {
+  return all.only(words.count(all.size() - 1));
 }
 
 }  // namespace
@@ -132,17 +82,20 @@ Real extreme(std::span<const Point* const> points, const Pose& pose, const Point
   return value + pose.shift(w);
 }
 
-Point read_place(Words& words, const Side& side) {
+Place read_place(Words& words, const Side& side) {
   if (!side.pieces) {
     words.expect("here");
-    return side.points[0];
+    return {side.points[0]};
   }
   words.expect("on");
-  return enclosing_box(*read_piece(words, *side.pieces), side.pose);
+  std::unique_ptr<PieceSet> piece = read_owner(words, *side.pieces);
+  const Index owner = piece->owners()[0];
+  read_steps(words, piece);
+  return {enclosing_box(*piece, side.pose), owner};
 }
 
 std::unique_ptr<PieceSet> read_piece(Words& words, const PieceSet& all) {
-  std::unique_ptr<PieceSet> piece = all.only(words.count(all.size() - 1));
+  std::unique_ptr<PieceSet> piece = read_owner(words, all);
   read_steps(words, piece);
   return piece;
 }
@@ -163,23 +116,42 @@ Point enclosing_box(PieceSet& piece, const Pose& pose) {
   return box;
 }
 
-std::string prove_claim(Words& words, std::array<Side, 2>& sides, LeastSlack& least) {
+namespace {
+
+std::string prove_claim(Words& words, Question& question, LeastSlack& least) {
   if (words.take("apart")) {
     const double margin = words.real();
     if (margin < 0) words.refuse("a negative margin");
-    prove_apart(words, sides, margin, least);
+    const Tree tree(words, {&question.sides[0], &question.sides[1]}, margin, least);
+    tree.prove({0, 1, question.sides[0].pieces}, {1, 2, question.sides[1].pieces}, {});
+    question.apart = true;
     return margin == 0 ? "have no point in common"
                        : "are farther apart than " + text_of(margin, false);
   }
   if (words.take("near")) {
     const double upper = words.real();
     if (upper < 0) words.refuse("a negative distance");
-    prove_near(words, sides, upper);
+    prove_near(words, question.sides, upper);
     return "are at most " + text_of(upper, true) + " apart";
   }
+  if (words.take("winding")) return prove_winding(words, question, least);
+  if (words.take("solids")) return prove_solids(words, question);
   words.expect("meet");
-  prove_meeting(words, sides);
+  prove_meeting(words, question.sides);
   return "have a point in common";
+}
+
+}  // namespace
+
+std::string prove_claims(Words& words, Question& question, LeastSlack& least) {
+  constexpr std::array claims{"apart", "near", "winding", "solids", "meet"};
+  std::string all;
+  do {
+    const std::string claim = prove_claim(words, question, least);
+    if (!claim.empty()) all += (all.empty() ? "" : ", and ") + claim;
+  } while (std::ranges::find(claims, words.peek()) != claims.end());
+  if (all.empty()) words.refuse("claims that nothing follows from");
+  return all;
 }
 
 }  // namespace answers

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <snug/distance.h>
@@ -91,6 +92,11 @@ struct PairCollision {
   Collision answer;
 };
 
+/// Run::certificate of a scene, for callers that share out pairs themselves. Pairs without an answer are farther apart than
+/// their margins, and so are the solids.
+SNUG_API void certify(const Scene& scene, const CollideOptions& options,
+                      std::span<const PairCollision> answers, const Run& run);
+
 /// Which parts of a scene touch? Passes the pairs that boxes do not separate to `sink`, in the order of Scene::pairs, each as soon as all pairs
 /// before it are answered, and on one thread at a time.
 ///
@@ -104,6 +110,10 @@ struct PairDistance {
   PartPair parts;
   Distance answer;
 };
+
+/// The same of distances. Pairs without an answer are farther apart than `limit`.
+SNUG_API void certify(const Scene& scene, double limit, const DistanceOptions& options,
+                      std::span<const PairDistance> answers, const Run& run);
 
 /// All clearances of a scene up to `limit`, passed on likewise. Ignores Scene::margins.
 /// Guarantee: each answer is bit-identical to that of distance() for the two parts.

@@ -88,8 +88,16 @@ class Surface(_Tagged):
         max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,
+        certificate: Optional[Union[str, "PathLike[str]"]] = None,
     ) -> SignedDistance: ...
-    def contains(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> Containment: ...
+    def contains(
+        self,
+        points: npt.ArrayLike,
+        *,
+        threads: int = 0,
+        progress: Progress = None,
+        certificate: Optional[Union[str, "PathLike[str]"]] = None,
+    ) -> Containment: ...
     def ray(
         self,
         origins: npt.ArrayLike,

@@ -64,16 +64,18 @@ Answers<ClosestPoint> closest(const PySurface& self, const py::object& points, c
 
 Answers<SignedDistance> signed_of(const PySurface& self, const py::object& points, const py::object& relative,
                                   const py::object& absolute, const py::object& max_splits,
-                                  const py::object& threads, const py::object& progress) {
+                                  const py::object& threads, const py::object& progress,
+                                  const py::object& certificate) {
+  CertificateFile file(certificate);
   const Precision options = precision_of(self, relative, absolute);
-  return for_points<SignedDistance>(
-      self, points, progress, run_of(threads, max_splits),
+  return file.written(for_points<SignedDistance>(
+      self, points, progress, file.with(run_of(threads, max_splits)),
       [&](const Surface& surface, const Point3& p, const Run& run) {
         return signed_distance(surface, p, options, run);
       },
       [&](const Surface& surface, std::span<const Point3> all, const Run& run) {
         return signed_distance(surface, all, options, run);
-      });
+      }));
 }
 
 /// Is a point inside? 1, 0, or -1 where that cannot be told.
@@ -84,9 +86,10 @@ struct Side {
 Side side_of(const std::optional<bool>& inside) { return {static_cast<std::int8_t>(inside ? *inside : -1)}; }
 
 Answers<Side> contained(const PySurface& self, const py::object& points, const py::object& threads,
-                        const py::object& progress) {
-  return for_points<Side>(
-      self, points, progress, run_of(threads),
+                        const py::object& progress, const py::object& certificate) {
+  CertificateFile file(certificate);
+  return file.written(for_points<Side>(
+      self, points, progress, file.with(run_of(threads)),
       [](const Surface& surface, const Point3& p, const Run& run) {
         return side_of(contains(surface, p, run));
       },
@@ -95,7 +98,7 @@ Answers<Side> contained(const PySurface& self, const py::object& points, const p
         std::vector<Side> sides(inside.size());
         std::ranges::transform(inside, sides.begin(), side_of);
         return sides;
-      });
+      }));
 }
 
 void add_closest(py::module_& module) {
@@ -477,13 +480,18 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
               .c_str())
       .def("signed_distance", &signed_of, arg("points"), py::kw_only(), arg("relative") = none,
            arg("absolute") = none, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
+           arg("certificate") = none,
            (std::string("The distance of a point (3,), or of each of (n, 3), negative inside of the closed "
                         "surface.\n\n") +
-            narrow + "\nRaises as closest_point(); MeshError for a surface that is not closed.")
+            narrow +
+            "certificate: a file for a proof of the distances and their signs, which snug-check verifies.\n"
+            "\nRaises as closest_point(); MeshError for a surface that is not closed.")
                .c_str())
       .def("contains", &contained, arg("points"), py::kw_only(), arg("threads") = 0, arg("progress") = none,
+           arg("certificate") = none,
            "Is a point (3,), or each of (n, 3), inside of the closed surface? Proved, or undecided.\n\n"
-           "threads: for many points; 0 takes all cores.\n"
+           "threads: for many points; 0 takes all cores. certificate: a file for a proof, which snug-check "
+           "verifies.\n"
            "Raises ValueError; MeshError for a surface that is not closed.")
       .def("ray", &find_hits, arg("origins"), arg("directions"), py::kw_only(), arg("query") = "nearest",
            arg("certified") = true, arg("absolute") = none, arg("error") = "0.01%", arg("max_splits") = none,

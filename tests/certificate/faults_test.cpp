@@ -286,7 +286,7 @@ TEST(certificate_faults, of_common_points_are_refused) {
     lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(find(lines, "border", k)));
     expect_refused("a border left out", lines, "cubes", tally);
     lines = whole;
-    lines[find(lines, "border", k)] = "border 3 0 0 0";
+    lines[find(lines, "border", k)] = "border 4 0 0 0";
     expect_refused("a border without a direction", lines, "cubes", tally);
   }
   Lines lines = whole;

@@ -42,10 +42,22 @@ def test_of_points_and_rays(bracket, tmp_path):
         bracket.ray([9, 9, 9], [1, 0, 0], certified=False, certificate=path)
 
 
+def test_of_signed_distances_and_containment(bracket, tmp_path):
+    path = tmp_path / "proof.txt"
+    points = np.array([[5.0, 0, 0], [0, 0, 0.5], [0.3, 0.2, 0.1]])
+    far = bracket.signed_distance(points, certificate=path)
+    inside = bracket.contains(points, certificate=tmp_path / "inside.txt")
+    lines = verified(path)
+    assert len(lines) == 3 and verified(tmp_path / "inside.txt")
+    for i, line in enumerate(lines):
+        winds = "winds 0 times" not in line
+        assert winds == bool(far.upper[i] < 0) == bool(inside.inside[i])
+
+
 def test_says_what_is_not_proved(bracket, pin, tmp_path):
     path = tmp_path / "proof.txt"
-    with pytest.warns(UserWarning, match="does not prove that neither solid lies inside the other"):
-        snug.collide(bracket, pin, solid=True, certificate=path)
-    assert len(verified(path)) == 1
+    with pytest.warns(UserWarning, match="not written, there is no proof of the verdict, which is undecided"):
+        snug.collide(pin, pin, tolerance=0, max_splits=1000, certificate=path)
+    assert not path.exists()
     with pytest.raises(OSError):
         snug.collide(bracket, pin, certificate=tmp_path / "none" / "proof.txt")

@@ -49,7 +49,7 @@ def test_help_shows_names_and_defaults():
     assert str(inspect.signature(snug.Surface)).startswith("(vertices, faces=None, *, scheme='auto', creases=None")
     assert str(inspect.signature(snug.Surface.hull)).startswith("(self, error=None, *, inner=True")
     cube = snug.Surface(CUBE, CUBE_FACES)
-    assert str(inspect.signature(cube.contains)) == "(points, *, threads=0, progress=None)"
+    assert str(inspect.signature(cube.contains)) == "(points, *, threads=0, progress=None, certificate=None)"
     assert "tolerance='0.1%'" in pydoc.plain(pydoc.render_doc(snug.collide)) and snug.collide.__doc__.startswith("Do two")
     for name in snug.__all__:
         thing = getattr(snug, name)

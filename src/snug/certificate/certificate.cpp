@@ -4,6 +4,7 @@
 
 #include <snug/certificate/meeting.h>
 #include <snug/certificate/text.h>
+#include <snug/certificate/winding.h>
 #include <support/point.h>
 
 namespace snug {
@@ -45,13 +46,18 @@ std::size_t CertificateWriter::index_of(const Surface& surface) {
   return known->second;
 }
 
-void CertificateWriter::set_side(std::size_t side, const PlacedSurface& surface) {
-  of_sides_[side] = surfaces_[index_of(surface.surface())].get();
-  sides_[side] = {.pieces = &of_sides_[side]->all(), .pose = surface.pose(), .points = {}, .direction = {}};
+CertifiedSide CertificateWriter::append_placed(const PlacedSurface& surface) {
+  const std::size_t index = index_of(surface.surface());
   text_ += "placed";
-  append_words(text_, index_of(surface.surface()));
+  append_words(text_, index);
   for (const double x : surface.pose().numbers()) append_words(text_, x);
   text_ += '\n';
+  return {.pieces = &surfaces_[index]->all(), .pose = surface.pose(), .points = {}, .direction = {}};
+}
+
+void CertificateWriter::set_side(std::size_t side, const PlacedSurface& surface) {
+  of_sides_[side] = surfaces_[index_of(surface.surface())].get();
+  sides_[side] = append_placed(surface);
 }
 
 void CertificateWriter::begin_question() {
@@ -68,14 +74,64 @@ void CertificateWriter::drop_question_without_claim() {
     }
   }
   question_ = 0;
+  are_apart_ = false;
   // What earlier questions needed of the surfaces may be of no use.
   if (++asked_ % 256 == 0) {
     for (const auto& surface : surfaces_) surface->all().forget();
   }
 }
 
-void CertificateWriter::ask(const PlacedSurface& a, const PlacedSurface& b) {
+void CertificateWriter::drop_scene_without_claim() {
   drop_question_without_claim();
+  if (!scene_) return;
+  if (text_.size() == scene_claims_) text_.resize(scene_begin_);
+  scene_.reset();
+}
+
+void CertificateWriter::ask(std::span<const PlacedSurface> parts) {
+  drop_scene_without_claim();
+  for (const PlacedSurface& part : parts) index_of(part.surface());
+  scene_begin_ = text_.size();
+  text_ += "question\nscene ";
+  append_integer(text_, parts.size());
+  text_ += '\n';
+  std::vector<CertifiedSide> sides;
+  of_parts_.clear();
+  for (const PlacedSurface& part : parts) {
+    sides.push_back(append_placed(part));
+    of_parts_.push_back(surfaces_[index_of(part.surface())].get());
+  }
+  scene_.emplace(std::move(sides));
+  text_ += "order";
+  for (const std::uint32_t part : scene_->order()) append_words(text_, part);
+  text_ += '\n';
+  scene_claims_ = text_.size();
+}
+
+void CertificateWriter::hulls(double margin, std::set<PartNumbers>& except) {
+  std::string proof;
+  scene_->append(proof, margin, except, monitor_);
+  text_ += "hulls ";
+  append_exactly(text_, margin);
+  append_words(text_, except.size());
+  for (const auto& [i, j] : except) append_words(text_, i, j);
+  text_ += '\n' + proof;
+  has_claims_ = true;
+}
+
+void CertificateWriter::pair(std::uint32_t a, std::uint32_t b) {
+  drop_question_without_claim();
+  question_ = text_.size();
+  text_ += "pair";
+  append_words(text_, a, b);
+  text_ += '\n';
+  sides_ = {scene_->part(a), scene_->part(b)};
+  of_sides_ = {of_parts_[a], of_parts_[b]};
+  claims_ = text_.size();
+}
+
+void CertificateWriter::ask(const PlacedSurface& a, const PlacedSurface& b) {
+  drop_scene_without_claim();
   for (const PlacedSurface* side : {&a, &b}) index_of(side->surface());
   begin_question();
   set_side(0, a);
@@ -84,7 +140,7 @@ void CertificateWriter::ask(const PlacedSurface& a, const PlacedSurface& b) {
 }
 
 void CertificateWriter::ask(const PlacedSurface& a, const Point3& b) {
-  drop_question_without_claim();
+  drop_scene_without_claim();
   index_of(a.surface());
   begin_question();
   set_side(0, a);
@@ -96,7 +152,7 @@ void CertificateWriter::ask(const PlacedSurface& a, const Point3& b) {
 }
 
 void CertificateWriter::ask(const PlacedSurface& a, const Ray& b) {
-  drop_question_without_claim();
+  drop_scene_without_claim();
   index_of(a.surface());
   begin_question();
   set_side(0, a);
@@ -127,6 +183,7 @@ Found CertificateWriter::apart(double margin) {
   text_ += '\n';
   const Found found = append_separation(text_, sides_, margin, {max_leaves, monitor_});
   if (found != Found::proof) text_.resize(before);
+  if (found == Found::proof) are_apart_ = true;
   return found;
 }
 
@@ -189,8 +246,55 @@ bool CertificateWriter::meet(const Place& a, const Place* b) {
   return append_meeting(text_, sides_, {name(0, a), b ? std::optional(name(1, *b)) : std::nullopt}, monitor_);
 }
 
+std::optional<int> CertificateWriter::winding(std::size_t side, const Place* at) {
+  const std::size_t before = text_.size();
+  text_ += "winding";
+  append_words(text_, side);
+  text_ += ' ';
+  Box3 point;
+  if (at != nullptr) {
+    point = append_place(side, *at);
+  } else {
+    text_ += "here\n";
+    point.add(sides_[side].points[0]);
+  }
+  const auto proof = winding_proof(sides_[1 - side], point, monitor_);
+  if (!proof) {
+    text_.resize(before);
+    return std::nullopt;
+  }
+  text_ += std::to_string(proof->number);
+  text_ += proof->text;
+  return proof->number;
+}
+
+bool CertificateWriter::solids_apart() {
+  if (!are_apart_) return false;
+  const std::size_t before = text_.size();
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const std::uint32_t owner : of_sides_[side]->owner_of_each_component()) {
+      const Place at{.owner = owner, .u = 0.25, .v = 0.25};
+      if (winding(side, &at) == 0) continue;
+      text_.resize(before);
+      return false;
+    }
+  }
+  text_ += "solids\n";
+  return true;
+}
+
+bool CertificateWriter::solids_meet(std::size_t side, const Place& at) {
+  const std::size_t before = text_.size();
+  if (winding(side, &at).value_or(0) == 0) {
+    text_.resize(before);
+    return false;
+  }
+  text_ += "solids\n";
+  return true;
+}
+
 std::string CertificateWriter::finished() {
-  drop_question_without_claim();
+  drop_scene_without_claim();
   return has_claims_ ? std::move(text_) + "end\n" : std::string();
 }
 

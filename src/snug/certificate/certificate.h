@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include <snug/certificate/separation.h>
+#include <snug/certificate/scene_tree.h>
 #include <snug/ray.h>
 
 namespace snug {
@@ -20,6 +20,12 @@ class CertificateWriter {
   void ask(const PlacedSurface& a, const Point3& b);
   void ask(const PlacedSurface& a, const Ray& b);
 
+  /// Begins a question about many parts, of which pairs are asked then.
+  void ask(std::span<const PlacedSurface> parts);
+  /// All pairs of parts but those of `except` have hulls more than `margin` apart; pairs without a proof are added to these.
+  void hulls(double margin, std::set<PartNumbers>& except);
+  void pair(std::uint32_t a, std::uint32_t b);
+
   /// The two are more than `margin` apart. Without a proof nothing is written.
   Found apart(double margin);
   /// The same for a lower end that may be as tight as doubles allow: less some 2^-38 of the largest coordinate. Without a
@@ -32,6 +38,14 @@ class CertificateWriter {
   /// written.
   bool meet(const Place& a, const Place* b);
 
+  /// How often a closed surface, which is the first if the point is the second, winds around a point: a limit point of
+  /// the other one, or that which it is. Nothing if no proof was found; nothing is then written.
+  std::optional<int> winding(std::size_t side, const Place* at);
+  /// What apart() has proved of two surfaces holds of the solids that they bound, too. False if no proof was found.
+  bool solids_apart();
+  /// A limit point of a surface lies in the other one's solid. False if no proof was found.
+  bool solids_meet(std::size_t side, const Place& at);
+
   /// The text, with its end; empty if nothing was proved.
   [[nodiscard]] std::string finished();
 
@@ -39,6 +53,8 @@ class CertificateWriter {
   std::size_t index_of(const Surface& surface);
   void begin_question();
   void drop_question_without_claim();
+  void drop_scene_without_claim();
+  CertifiedSide append_placed(const PlacedSurface& surface);
   void set_side(std::size_t side, const PlacedSurface& surface);
   // Appends the name of a piece around a place and gives its box, where it is placed.
   Box3 append_place(std::size_t side, const Place& at);
@@ -46,10 +62,15 @@ class CertificateWriter {
   const WorkMonitor& monitor_;
   std::string text_ = "snug-certificate 1\n";
   bool has_claims_ = false;
+  bool are_apart_ = false;  // proved in the last question
   std::size_t asked_ = 0;
-  std::size_t question_ = 0, claims_ = 0;  // where the last question and its claims begin; 0: there is none
+  // Where the last question, or pair of a scene, and its claims begin; 0: there is none.
+  std::size_t question_ = 0, claims_ = 0;
+  std::size_t scene_begin_ = 0, scene_claims_ = 0;  // the same of a scene
   std::map<const SurfaceData*, std::size_t> indices_;
   std::vector<std::unique_ptr<CertifiedSurface>> surfaces_;
+  std::optional<SceneTree> scene_;
+  std::vector<CertifiedSurface*> of_parts_;
   std::array<CertifiedSide, 2> sides_;
   std::array<CertifiedSurface*, 2> of_sides_{};
 };

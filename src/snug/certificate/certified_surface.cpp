@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include <snug/certificate/text.h>
 #include <snug/scheme/refine.h>
@@ -145,6 +146,29 @@ void CertifiedSurface::write(std::string& text) const {
   text += "order";
   for (const std::uint32_t owner : order_) append_words(text, std::size_t{owner});
   text += '\n';
+}
+
+std::vector<std::uint32_t> CertifiedSurface::owner_of_each_component() const {
+  const Topology& topology = net_->topology;
+  std::vector<std::uint32_t> root(topology.vertex_count());
+  std::iota(root.begin(), root.end(), 0U);
+  const auto root_of = [&](VertexId of) {
+    std::uint32_t v = of.value();
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    for (const VertexId v : topology.face(FaceId(f))) root[root_of(v)] = root_of(topology.face(FaceId(f))[0]);
+  }
+  std::vector<bool> seen(root.size());
+  std::vector<std::uint32_t> owners;
+  for (const std::uint32_t owner : order_) {
+    const bool primal = rules_of(options_.scheme).primal;
+    const std::uint32_t v = root_of(primal ? topology.face(FaceId(owner))[0] : VertexId(owner));
+    if (!seen[v]) owners.push_back(owner);
+    seen[v] = true;
+  }
+  return owners;
 }
 
 std::vector<std::size_t> CertifiedSurface::steps_to(const Place& at, std::size_t count) const {

@@ -1,5 +1,9 @@
 #include <snug/certificate/certify.h>
 
+#include <map>
+#include <set>
+#include <type_traits>
+
 #include <snug/certificate/certificate.h>
 #include <support/point.h>
 #include <support/run.h>
@@ -35,12 +39,20 @@ class Proofs {
   Proofs(CertificateWriter& writer, Gaps& gaps, std::size_t answer)
       : writer_(writer), gaps_(gaps), answer_(answer) {}
 
-  void more_than(double margin) {
-    gaps_.add(answer_, "that the surfaces are separated", writer_.apart(margin));
+  void more_than(double margin, bool of_solids) {
+    const Found found = writer_.apart(margin);
+    gaps_.add(answer_, "that the surfaces are separated", found);
+    if (of_solids && found == Found::proof) neither_inside();
   }
-  void below(double lower) {
+  // Of surfaces that are proved to be apart.
+  void neither_inside() {
+    if (!writer_.solids_apart()) gaps_.add(answer_, "that neither solid lies inside the other");
+  }
+  void below(double lower, bool of_solids) {
     if (lower > 0) gaps_.add(answer_, "all of the lower end of the distance", writer_.at_least(lower));
+    if (of_solids && lower > 0) neither_inside();
   }
+  void nothing_of(const std::string& what) { gaps_.add(answer_, what); }
   void above(double upper, const std::optional<WitnessPoints>& witness) {
     if (!(upper < INFINITY)) return;
     const Place* const a = witness ? place_of((*witness)[0]) : nullptr;
@@ -52,9 +64,13 @@ class Proofs {
       writer_.near(upper, *a, b);
     }
   }
-  void meeting(const std::optional<WitnessPoints>& witness, bool of_solids) {
+  // `inner`: whose witness is said to lie in the other solid.
+  void meeting(const std::optional<WitnessPoints>& witness, std::optional<std::size_t> inner,
+               bool of_solids) {
     const Place* const a = witness ? place_of((*witness)[0]) : nullptr;
     const Place* const b = witness ? place_of((*witness)[1]) : nullptr;
+    const Place* const inside = !inner ? nullptr : *inner == 0 ? a : b;
+    if (inside != nullptr && writer_.solids_meet(*inner, *inside)) return;
     if (a != nullptr && b != nullptr && writer_.meet(*a, b)) return;
     gaps_.add(answer_, of_solids ? "that the solids have a point in common"
                                  : "that the surfaces have a point in common");
@@ -67,39 +83,31 @@ class Proofs {
   std::size_t answer_;
 };
 
-void add(CertificateWriter& writer, Gaps& gaps, std::size_t i, const PlacedSurface& a, const PlacedSurface& b,
-         const CollideOptions& options, const Collision& answer) {
-  writer.ask(a, b);
-  Proofs proofs(writer, gaps, i);
+void add(Proofs proofs, const CollideOptions& options, const Collision& answer) {
   switch (answer.verdict) {
     case Verdict::separated:
-      proofs.more_than(options.margin);
+      proofs.more_than(options.margin, options.solid);
       if (answer.witness) proofs.above(answer.distance.upper, answer.witness);
-      if (options.solid) gaps.add(i, "that neither solid lies inside the other");
       return;
     case Verdict::within:
       proofs.above(answer.distance.upper, answer.witness);
       return;
     case Verdict::intersecting:
-      proofs.meeting(answer.witness, options.solid);
+      proofs.meeting(answer.witness, answer.contained, options.solid);
       return;
     case Verdict::undecided:
-      gaps.add(i, "the verdict, which is undecided");
+      proofs.nothing_of("the verdict, which is undecided");
       return;
   }
 }
 
-void add(CertificateWriter& writer, Gaps& gaps, std::size_t i, const PlacedSurface& a, const PlacedSurface& b,
-         const DistanceOptions& options, const Distance& answer) {
-  writer.ask(a, b);
-  Proofs proofs(writer, gaps, i);
+void add(Proofs proofs, const DistanceOptions& options, const Distance& answer) {
   if (answer.distance.upper == 0) {
-    proofs.meeting(answer.witness, options.solid);
+    proofs.meeting(answer.witness, answer.contained, options.solid);
     return;
   }
-  proofs.below(answer.distance.lower);
+  proofs.below(answer.distance.lower, options.solid);
   proofs.above(answer.distance.upper, answer.witness);
-  if (options.solid) gaps.add(i, "that neither solid lies inside the other");
 }
 
 // Calls add(writer, gaps, i) for each answer.
@@ -121,7 +129,8 @@ template <class Options, class Answer>
 void write_pair(const Run& run, const PlacedSurface& a, const PlacedSurface& b, const Options& options,
                 const Answer& answer) {
   write(run, {&a.surface(), &b.surface()}, 1, [&](CertificateWriter& writer, Gaps& gaps, std::size_t i) {
-    add(writer, gaps, i, a, b, options, answer);
+    writer.ask(a, b);
+    add({writer, gaps, i}, options, answer);
   });
 }
 
@@ -129,7 +138,8 @@ template <class Options, class Answer>
 void write_poses(const Run& run, const Surface& a, const Surface& b, std::span<const PosePair> poses,
                  const Options& options, std::span<const Answer> answers) {
   write(run, {&a, &b}, answers.size(), [&](CertificateWriter& writer, Gaps& gaps, std::size_t i) {
-    add(writer, gaps, i, a.at(poses[i].a), b.at(poses[i].b), options, answers[i]);
+    writer.ask(a.at(poses[i].a), b.at(poses[i].b));
+    add({writer, gaps, i}, options, answers[i]);
   });
 }
 
@@ -155,30 +165,121 @@ void certify(const Run& run, const Surface& a, const Surface& b, std::span<const
   write_poses(run, a, b, poses, options, answers);
 }
 
+namespace {
+
+void add_closest(CertificateWriter& writer, Gaps& gaps, std::size_t i, const ClosestPoint& answer) {
+  if (answer.distance.lower > 0) {
+    gaps.add(i, "all of the lower end of the distance", writer.at_least(answer.distance.lower));
+  }
+  writer.near(answer.distance.upper, *answer.at, nullptr);
+}
+
+void add_side(CertificateWriter& writer, Gaps& gaps, std::size_t i, bool inside) {
+  const std::optional<int> number = writer.winding(1, nullptr);
+  if (!number || (*number != 0) != inside)
+    gaps.add(i, inside ? "that the point is inside" : "that the point is outside");
+}
+
+}  // namespace
+
 void certify(const Run& run, const Surface& surface, std::span<const Point3> points,
              std::span<const ClosestPoint> answers) {
   write(run, {&surface}, answers.size(), [&](CertificateWriter& writer, Gaps& gaps, std::size_t i) {
-    const ClosestPoint& answer = answers[i];
     writer.ask(surface, points[i]);
-    if (answer.distance.lower > 0) {
-      gaps.add(i, "all of the lower end of the distance", writer.at_least(answer.distance.lower));
+    add_closest(writer, gaps, i, answers[i]);
+  });
+}
+
+void certify(const Run& run, const Surface& surface, std::span<const Point3> points,
+             std::span<const SignedDistance> answers) {
+  write(run, {&surface}, answers.size(), [&](CertificateWriter& writer, Gaps& gaps, std::size_t i) {
+    const SignedDistance& answer = answers[i];
+    writer.ask(surface, points[i]);
+    add_closest(writer, gaps, i, answer.nearest);
+    if (answer.distance.lower > 0 || answer.distance.upper < 0) {
+      add_side(writer, gaps, i, answer.distance.upper < 0);
+    } else {
+      gaps.add(i, "a sign of the distance, which the answer leaves open");
     }
-    writer.near(answer.distance.upper, *answer.at, nullptr);
+  });
+}
+
+void certify(const Run& run, const Surface& surface, std::span<const Point3> points,
+             std::span<const std::optional<bool>> answers) {
+  write(run, {&surface}, answers.size(), [&](CertificateWriter& writer, Gaps& gaps, std::size_t i) {
+    writer.ask(surface, points[i]);
+    if (answers[i]) {
+      add_side(writer, gaps, i, *answers[i]);
+    } else {
+      gaps.add(i, "whether the point is inside, which is undecided");
+    }
   });
 }
 
 namespace {
 
-// From there on a plane across the ray lies between it and the surface.
-double behind(const Surface& surface, const Ray& ray) {
-  double farthest = ray.from;
-  for (const Point3& p : surface.mesh().points) {
-    farthest = std::max(farthest, dot(p - ray.origin, ray.direction) / length_sq(ray.direction));
+// Each pair with a question of its own, but for those whose parts lie in hulls that are apart.
+template <class Options, class PairAnswer>
+void write_scene(const Run& run, const Scene& scene, double margin, const Options& options,
+                 std::span<const PairAnswer> answers) {
+  if (run.certificate == nullptr) return;
+  *run.certificate = {};
+  for (const PlacedSurface& part : scene.parts) {
+    run.certificate->missing = CertifiedSurface::refusal(part.surface());
+    if (!run.certificate->missing.empty()) return;
   }
-  return farthest;
+  const auto sorted = [](const PartPair& pair) { return PartNumbers(std::minmax(pair.a, pair.b)); };
+  std::map<PartNumbers, double> margins;
+  for (const PairMargin& own : scene.margins) margins[sorted(own.parts)] = own.margin;
+  std::map<PartNumbers, const PairAnswer*> answered;
+  for (const PairAnswer& answer : answers) answered[sorted(answer.parts)] = &answer;
+
+  CertificateWriter writer(monitor_of(run));
+  writer.ask(scene.parts);
+  std::vector<PartPair> pairs;
+  if (scene.pairs) {
+    pairs = *scene.pairs;
+  } else {
+    std::set<PartNumbers> except;
+    for (const auto& [pair, own] : margins) except.insert(pair);
+    for (const auto& [pair, answer] : answered) except.insert(pair);
+    writer.hulls(margin, except);
+    for (const auto& [a, b] : except) pairs.push_back({a, b});
+  }
+  std::string missing;
+  for (const PartPair& pair : pairs) {
+    Certificate of_pair;
+    Gaps gaps(of_pair, 1);
+    writer.pair(pair.a, pair.b);
+    Proofs proofs(writer, gaps, 0);
+    const auto own = margins.find(sorted(pair));
+    const double wanted = own == margins.end() ? margin : own->second;
+    if (const auto found = answered.find(sorted(pair)); found != answered.end()) {
+      Options of_this = options;
+      if constexpr (std::is_same_v<Options, CollideOptions>) of_this.margin = wanted;
+      add(proofs, of_this, found->second->answer);
+    } else {
+      proofs.more_than(wanted, options.solid);
+    }
+    if (missing.empty() && !of_pair.missing.empty()) {
+      missing =
+          "of parts " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + ": " + of_pair.missing;
+    }
+  }
+  *run.certificate = {writer.finished(), missing};
 }
 
 }  // namespace
+
+void certify(const Scene& scene, const CollideOptions& options, std::span<const PairCollision> answers,
+             const Run& run) {
+  write_scene(run, scene, options.margin, options, answers);
+}
+
+void certify(const Scene& scene, double limit, const DistanceOptions& options,
+             std::span<const PairDistance> answers, const Run& run) {
+  write_scene(run, Scene{scene.parts, scene.pairs, {}}, limit, options, answers);
+}
 
 void certify(const Run& run, const Surface& surface, std::span<const Ray> rays, RayQuery query,
              std::span<const RayHits> answers) {
@@ -188,16 +289,10 @@ void certify(const Run& run, const Surface& surface, std::span<const Ray> rays, 
     const double slack = 0x1p-34 * surface.size() / length(ray.direction);
     bool nothing_between = answers[i].outcome != Outcome::budget_spent && query != RayQuery::any;
     if (answers[i].certain_miss()) nothing_between = true;
-    const double beyond = behind(surface, ray) + 0x1p-6 * surface.size() / length(ray.direction);
     const auto require_miss = [&](double from, double to) {
       if (!nothing_between || from > to) return;
-      // A half-line is cut where a plane across it separates what follows from the surface.
-      const double cut = to < INFINITY ? to : std::max(from, beyond);
-      for (const auto& [begin, end] : {std::pair{from, cut}, {cut, to}}) {
-        if (begin == end) continue;
-        writer.ask(surface, Ray{ray.origin, ray.direction, begin, end});
-        gaps.add(i, "that the ray meets nothing elsewhere", writer.apart(0));
-      }
+      writer.ask(surface, Ray{ray.origin, ray.direction, from, to});
+      gaps.add(i, "that the ray meets nothing elsewhere", writer.apart(0));
     };
     double from = ray.from;
     for (const RayHit& hit : answers[i].hits) {

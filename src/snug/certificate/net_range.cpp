@@ -31,6 +31,7 @@ std::unique_ptr<NetRange> NetRange::only(std::size_t owner) const {
 }
 
 bool NetRange::dual() const { return !rules_of(options_.scheme).primal; }
+bool NetRange::triangular() const { return rules_of(options_.scheme).triangular(); }
 
 std::size_t NetRange::corner_count() const {
   const Topology& topology = net_->topology;
@@ -43,8 +44,7 @@ std::vector<HalfEdge> NetRange::faces_around(unsigned rings) const {
   const Topology& topology = net_->topology;
   const SchemeRules& rules = rules_of(options_.scheme);
   std::vector<std::uint32_t> faces, vertices;
-  for (std::size_t i = begin_; i < end_; ++i) {
-    const std::uint32_t owner = net_->owners[i];
+  for (const std::uint32_t owner : owners()) {
     rules.primal ? faces.push_back(owner) : vertices.push_back(topology.from(owner).value());
   }
   keep_once(faces);
@@ -61,6 +61,31 @@ std::vector<HalfEdge> NetRange::faces_around(unsigned rings) const {
   std::vector<HalfEdge> firsts;
   for (const std::uint32_t f : faces) firsts.push_back(topology.first_of(FaceId(f)));
   return firsts;
+}
+
+Box3 NetRange::rough_box(const Motion& pose) const {
+  const Topology& topology = net_->topology;
+  Box3 box;
+  const auto add_middle = [&](FaceId f) {
+    Vector3 sum;
+    for (const VertexId v : topology.face(f)) sum = sum + (net_->points[v.index()] - Point3{});
+    box.add(pose.apply(Point3{} + (1.0 / static_cast<double>(topology.face(f).size())) * sum));
+  };
+  for (const std::uint32_t owner : owners()) {
+    if (dual()) {
+      topology.walk_fan(owner, [&](HalfEdge h) { add_middle(topology.face_of(h)); });
+    } else {
+      for (const VertexId v : topology.face(FaceId(owner))) box.add(pose.apply(net_->points[v.index()]));
+    }
+  }
+  return box;
+}
+
+std::unique_ptr<NetRange> NetRange::some(std::span<const std::size_t> of) const {
+  auto net = std::make_shared<CertifiedNet>(*net_);
+  net->owners.clear();
+  for (const std::size_t i : of) net->owners.push_back(owners()[i]);
+  return std::make_unique<NetRange>(std::move(net), options_, 0, of.size(), level_);
 }
 
 std::vector<Point3> NetRange::hull(const Motion& pose) const {

@@ -44,13 +44,21 @@ class NetRange {
   }
   /// Requires:  owner < size().
   [[nodiscard]] std::unique_ptr<NetRange> only(std::size_t owner) const;
+  /// About where the pieces lie: a box around their vertices, or the middles of faces around those of a dual scheme.
+  [[nodiscard]] Box3 rough_box(const Motion& pose) const;
+  /// Some of the owners, which are counted in the range.
+  [[nodiscard]] std::unique_ptr<NetRange> some(std::span<const std::size_t> owners) const;
   /// Points whose hull contains the pieces, where they are placed.
   [[nodiscard]] std::vector<Point3> hull(const Motion& pose) const;
   /// Corners of the only owner: of a face, or faces around a vertex.
   [[nodiscard]] std::size_t corner_count() const;
   [[nodiscard]] bool dual() const;
+  [[nodiscard]] bool triangular() const;
 
  private:
+  [[nodiscard]] std::span<const std::uint32_t> owners() const {
+    return std::span(net_->owners).subspan(begin_, size());
+  }
   // The faces that decide about the owners, by their first half-edges.
   [[nodiscard]] std::vector<HalfEdge> faces_around(unsigned rings) const;
 
@@ -76,6 +84,8 @@ class CertifiedSurface {
   [[nodiscard]] const Surface& surface() const { return surface_; }
   /// Why no certificate says anything about such a surface; empty if it can.
   [[nodiscard]] static std::string refusal(const Surface& surface);
+  /// One owner of each component.
+  [[nodiscard]] std::vector<std::uint32_t> owner_of_each_component() const;
   /// The children that lead to a place, one a step.
   /// Requires:  a limit point at the place.
   [[nodiscard]] std::vector<std::size_t> steps_to(const Place& at, std::size_t count) const;

@@ -56,24 +56,36 @@ Extent extent_along(std::span<const Point3> points, const Vector3& w) {
   return extent;
 }
 
+namespace {
+
+using Whole = std::array<std::int64_t, 3>;
+
+Vector3 real(const Whole& w) {
+  return {static_cast<double>(w[0]), static_cast<double>(w[1]), static_cast<double>(w[2])};
+}
+
+// A direction of short integers like w that separates, by more than the rounding of sums of three products of coordinates and
+// of what made them, and does not go back along a half-line.
+std::optional<Whole> rounded(std::span<const Point3> a, std::span<const Point3> b, double margin,
+                             const Vector3& w, const Vector3& along = {}) {
+  const double noise = 0x1p-46 * std::max(largest_coordinate(a), largest_coordinate(b));
+  for (const double scale : {0x1p7, 0x1p15, 0x1p30}) {
+    const double by = scale / max_abs(w);
+    const Whole whole{std::llround(by * w.x), std::llround(by * w.y), std::llround(by * w.z)};
+    const Vector3 v = real(whole);
+    if (dot(v, along) < 0) continue;
+    if (support_along(a, b, v).gap > (margin * (1 + 0x1p-40) + 4 * noise) * length(v)) return whole;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
                                                                 std::span<const Point3> b, double margin,
                                                                 Vector3& hint) {
-  // Sums of three products of coordinates and of what made them.
-  const double noise = 0x1p-46 * std::max(largest_coordinate(a), largest_coordinate(b));
-  const auto rounded = [&](const Vector3& w) -> std::optional<std::array<std::int64_t, 3>> {
-    for (const double scale : {0x1p7, 0x1p15, 0x1p30}) {
-      const double by = scale / max_abs(w);
-      const std::array<std::int64_t, 3> whole{std::llround(by * w.x), std::llround(by * w.y),
-                                              std::llround(by * w.z)};
-      const Vector3 v{static_cast<double>(whole[0]), static_cast<double>(whole[1]),
-                      static_cast<double>(whole[2])};
-      if (support_along(a, b, v).gap > (margin * (1 + 0x1p-40) + 4 * noise) * length(v)) return whole;
-    }
-    return std::nullopt;
-  };
   if (length_sq(hint) > 0 && support_along(a, b, hint).gap > margin * length(hint)) {
-    if (const auto found = rounded(hint)) return found;
+    if (const auto found = rounded(a, b, margin, hint)) return found;
   }
   std::vector<Vector3> met{b[0] - a[0]};
   double best = -INFINITY;
@@ -93,7 +105,7 @@ std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const 
       hint = w;
     }
     if (gap > margin) {
-      if (const auto found = rounded(w)) return found;
+      if (const auto found = rounded(a, b, margin, w)) return found;
     }
     // The distance of the hulls is at most size |w|: no better direction is left, or none that would do.
     if (size * norm <= margin || size * norm - gap <= 1e-3 * std::fabs(size * norm - margin))
@@ -103,16 +115,36 @@ std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const 
   return std::nullopt;
 }
 
+std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a, const HalfLine& b,
+                                                                Vector3& hint) {
+  const double norm = length_sq(b.along);
+  const auto before = [&](const Point3& p) { return dot(p - b.from[0], b.along) / norm; };
+  // Seen along the line, which is a point then; else with the start alone.
+  std::vector<Point3> seen(a.begin(), a.end()), starts = b.from;
+  for (std::vector<Point3>* points : {&seen, &starts}) {
+    for (Point3& p : *points) p = p - before(p) * b.along;
+  }
+  for (const bool whole_line : {true, false}) {
+    if (whole_line ? !separating_direction(seen, starts, 0, hint) : !separating_direction(a, b.from, 0, hint))
+      continue;
+    if (whole_line) hint = hint - (dot(hint, b.along) / norm) * b.along;
+    for (const double tilt : {0.0, 0x1p-20, 0x1p-12, 0x1p-8, 0x1p-5}) {
+      const Vector3 w = hint + (tilt * length(hint) / std::sqrt(norm)) * b.along;
+      if (const auto found = rounded(a, b.from, 0, w, b.along)) return found;
+    }
+  }
+  return std::nullopt;
+}
+
 namespace {
 
 class Search {
  public:
   Search(std::string& text, const std::array<CertifiedSide, 2>& sides, double margin,
-         const ProofLimits& limits)
-      : text_(text), sides_(sides), margin_(margin), limits_(limits) {}
+         const ProofLimits& limits, const AppendCrossing& crossing)
+      : text_(text), sides_(sides), margin_(margin), limits_(limits), crossing_(crossing) {}
 
   Found run() {
-    // Of a half-line only what lies behind a plane across it is asked.
     std::vector<Pair> open{{{sides_[0].pieces, sides_[1].pieces}, sides_[1].direction.value_or(Vector3{})}};
     std::size_t leaves = 0;
     bool in_word = false;
@@ -122,14 +154,25 @@ class Search {
       open.pop_back();
       const auto& a = points_of(0, pair.of[0]);
       const auto& b = points_of(1, pair.of[1]);
-      const auto direction = separating_direction(a, b, margin_, pair.hint);
-      if (direction && leaves_ray(*direction)) {
+      const auto direction = sides_[1].direction
+                                 ? separating_direction(a, {b, *sides_[1].direction}, pair.hint)
+                                 : separating_direction(a, b, margin_, pair.hint);
+      if (direction) {
         if (++leaves > limits_.leaves) return Found::too_many_leaves;
         if (in_word) text_ += ' ';
         in_word = false;
         append_direction(*direction);
         text_ += '\n';
         continue;
+      }
+      if (crossing_ && pair.of[0]->size() == 1) {
+        const std::size_t before = text_.size();
+        if (in_word) text_ += ' ';
+        if (crossing_(text_, *pair.of[0])) {
+          in_word = false;
+          continue;
+        }
+        text_.resize(before);
       }
       const std::size_t side = side_to_open(pair, a, b);
       NetRange* const range = pair.of[side];
@@ -165,7 +208,7 @@ class Search {
 
   // A few owners beside each other: their hull is mostly what is around them. Halves of what are not are much smaller.
   bool is_to_be_finer(std::size_t side, NetRange& range) {
-    if (range.size() == 1 || range.size() > few_owners) return range.size() == 1;
+    if (range.size() == 1 || range.size() > few_owners || crossing_) return range.size() == 1;
     const double size = longest_side(box_of(points_of(side, &range)));
     const auto of_half = [&](std::size_t k) { return longest_side(box_of(points_of(side, &range.half(k)))); };
     return std::min(of_half(0), of_half(1)) > 0.6 * size;
@@ -188,15 +231,6 @@ class Search {
     return size(a) >= size(b) ? 0 : 1;
   }
 
-  // Does a half-line stay on its side of the plane?
-  [[nodiscard]] bool leaves_ray(const std::array<std::int64_t, 3>& w) const {
-    const Vector3 v{static_cast<double>(w[0]), static_cast<double>(w[1]), static_cast<double>(w[2])};
-    const auto along = [&](const CertifiedSide& side) {
-      return side.direction ? dot(v, *side.direction) : 0;
-    };
-    return along(sides_[0]) <= 0 && along(sides_[1]) >= 0;
-  }
-
   void append_direction(const std::array<std::int64_t, 3>& w) {
     for (std::size_t i = 0; i < 3; ++i) {
       if (i > 0) text_ += ' ';
@@ -208,14 +242,15 @@ class Search {
   const std::array<CertifiedSide, 2>& sides_;
   double margin_;
   const ProofLimits& limits_;
+  const AppendCrossing& crossing_;
   std::array<std::unordered_map<const NetRange*, std::vector<Point3>>, 2> placed_;
 };
 
 }  // namespace
 
 Found append_separation(std::string& text, const std::array<CertifiedSide, 2>& sides, double margin,
-                        const ProofLimits& limits) {
-  return Search(text, sides, margin, limits).run();
+                        const ProofLimits& limits, const AppendCrossing& crossing) {
+  return Search(text, sides, margin, limits, crossing).run();
 }
 
 }  // namespace snug

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -28,10 +29,15 @@ enum class Found : std::uint8_t {
   at_rounding,  ///< what remains cannot be told from a common point in doubles
 };
 
+/// Appends a proof that one piece crosses a half-line, or false.
+using AppendCrossing = std::function<bool(std::string& text, NetRange& piece)>;
+
 /// Appends a tree that proves two sets to be more than `margin` apart, as docs/certificates.md has it. Without a proof
 /// what was appended is of no use. The tree is proved by who checks it: this is a search in double precision.
+/// `crossing`, if given, is asked about pieces of the first set that are not seen to be apart from the second.
 [[nodiscard]] Found append_separation(std::string& text, const std::array<CertifiedSide, 2>& sides,
-                                      double margin, const ProofLimits& limits);
+                                      double margin, const ProofLimits& limits,
+                                      const AppendCrossing& crossing = {});
 
 /// Points as a direction sees them.
 struct Extent {
@@ -47,5 +53,14 @@ struct Extent {
 [[nodiscard]] std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
                                                                               std::span<const Point3> b,
                                                                               double margin, Vector3& hint);
+/// A half-line from one of these points, all of which are meant.
+struct HalfLine {
+  std::vector<Point3> from;
+  Vector3 along;
+};
+/// The same with a half-line for `b` and no margin.
+[[nodiscard]] std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
+                                                                              const HalfLine& b,
+                                                                              Vector3& hint);
 
 }  // namespace snug

@@ -226,7 +226,9 @@ std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const 
 }
 
 std::optional<bool> contains(const Surface& surface, const Point3& point, const Run& run) {
-  return contains(workspace_of(run).pieces().of(surface), point, run);
+  const std::optional<bool> inside = contains(workspace_of(run).pieces().of(surface), point, run);
+  certify(run, surface, {&point, 1}, {&inside, 1});
+  return inside;
 }
 
 std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points,
@@ -237,12 +239,15 @@ std::vector<std::optional<bool>> contains(const Surface& surface, std::span<cons
   for_each_point(
       model, points, run.threads, monitor_of(run),
       [&](SurfaceWorkspace& workspace, std::size_t i) { results[i] = contains(workspace, points[i], run); });
+  certify(run, surface, points, results);
   return results;
 }
 
 SignedDistance signed_distance(const Surface& surface, const Point3& point, const Precision& options,
                                const Run& run) {
-  return signed_distance(workspace_of(run).pieces().of(surface), point, options, run);
+  const SignedDistance found = signed_distance(workspace_of(run).pieces().of(surface), point, options, run);
+  certify(run, surface, {&point, 1}, {&found, 1});
+  return found;
 }
 
 std::vector<SignedDistance> signed_distance(const Surface& surface, std::span<const Point3> points,
@@ -254,6 +259,7 @@ std::vector<SignedDistance> signed_distance(const Surface& surface, std::span<co
                  [&](SurfaceWorkspace& workspace, std::size_t i) {
                    results[i] = signed_distance(workspace, points[i], options, run);
                  });
+  certify(run, surface, points, results);
   return results;
 }
 

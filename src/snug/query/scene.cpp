@@ -338,6 +338,7 @@ SceneCounts collide(const Scene& scene, const CollideOptions& options,
                     const std::function<void(const PairCollision&)>& sink, const Run& run) {
   SceneBroadPhase pairs(scene, options.margin, false, run);
   SceneCounts counts;
+  std::vector<PairCollision> proved;
   const auto ask = [&](const ScenePair& pair, const Run& each) {
     return collide(scene, pair, options, each);
   };
@@ -347,9 +348,11 @@ SceneCounts collide(const Scene& scene, const CollideOptions& options,
        : verdict == Verdict::within       ? counts.within
        : verdict == Verdict::intersecting ? counts.intersecting
                                           : counts.undecided);
+    if (run.certificate != nullptr) proved.push_back({pair.parts, answer});
     sink({pair.parts, std::move(answer)});
   };
   const std::uint64_t near = answer_pairs<Collision>(pairs, run, ask, take);
+  certify(scene, options, proved, run);
   counts.pairs = pairs.pair_count();
   counts.separated_by_boxes = counts.pairs - near;
   return counts;
@@ -361,6 +364,7 @@ SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& op
   const Scene bare{scene.parts, scene.pairs, {}};
   SceneBroadPhase pairs(bare, limit, false, run);
   SceneCounts counts;
+  std::vector<PairDistance> proved;
   const auto ask = [&](const ScenePair& pair, const Run& each) {
     return distance(bare, pair, options, each);
   };
@@ -370,9 +374,11 @@ SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& op
       return;
     }
     ++(answer->distance.upper == 0 ? counts.intersecting : counts.within);
+    if (run.certificate != nullptr) proved.push_back({pair.parts, *answer});
     sink({pair.parts, std::move(*answer)});
   };
   const std::uint64_t near = answer_pairs<std::optional<Distance>>(pairs, run, ask, take);
+  certify(bare, limit, options, proved, run);
   counts.pairs = pairs.pair_count();
   counts.separated_by_boxes = counts.pairs - near;
   return counts;

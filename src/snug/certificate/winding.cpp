@@ -1,0 +1,96 @@
+#include <snug/certificate/winding.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <snug/certificate/disc.h>
+#include <snug/certificate/text.h>
+#include <support/point.h>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t max_leaves = 5'000;  // along one half-line
+constexpr std::size_t random_directions = 10;
+
+// The shortest ways out of a box, and some others, none of which is along an axis.
+std::vector<Vector3> ways_out(const Point3& from, const Box3& of) {
+  std::vector<std::pair<double, Vector3>> ways;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      Vector3 way{0.0625, 0.046875, 0.03125};
+      way[axis] = sign;
+      ways.emplace_back(sign < 0 ? from[axis] - of.lower[axis] : of.upper[axis] - from[axis], way);
+    }
+  }
+  std::stable_sort(ways.begin(), ways.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Vector3> directions;
+  for (const auto& [distance, way] : ways) directions.push_back(way);
+  std::minstd_rand random;
+  const auto number = [&] { return static_cast<double>(random() % 2048) / 1024 - 1; };
+  for (std::size_t i = 0; i < random_directions; ++i) {
+    const Vector3 way{number(), number(), number()};
+    if (length_sq(way) > 0.0625) directions.push_back(way);
+  }
+  return directions;
+}
+
+// That a piece crosses a half-line so many times, by sign.
+std::optional<int> append_crossing(std::string& text, NetRange& piece, const Motion& pose,
+                                   const HalfLine& line, double error) {
+  Disc disc(piece.only(0), pose);
+  if (!disc.is_simple()) return std::nullopt;
+  std::string proof = "x";
+  Disc::append_steps_of_hull(proof);
+  Vector3 hint;
+  const auto off_start = separating_direction(disc.hull(), line.from, 0, hint);
+  if (!off_start) return std::nullopt;
+  append_direction(proof, *off_start);
+  for (const std::vector<Point3>& border : disc.borders()) {
+    Vector3 best;
+    const auto w = separating_direction(border, line, best);
+    if (!w) return std::nullopt;
+    Disc::append_border(proof, *w);
+  }
+  const Point3 middle = line.from.front();
+  const auto crossed = disc.append_corners(proof, middle, line.along, nullptr, error);
+  if (!crossed || *crossed == 0) return std::nullopt;  // smaller pieces are held off the line at less cost
+  text += proof;
+  return crossed;
+}
+
+}  // namespace
+
+std::optional<WindingProof> winding_proof(const CertifiedSide& surface, const Box3& point,
+                                          const WorkMonitor& monitor) {
+  const Vector3 sides = point.upper - point.lower;
+  HalfLine line{{point.lower + 0.5 * sides}, {}};
+  const double error = longest_side(point) + 0x1p-48 * largest_coordinate(line.from);
+  if (longest_side(point) > 0) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Point3 p = point.lower;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if ((corner >> axis & 1U) != 0) p[axis] = point.upper[axis];
+      }
+      line.from.push_back(p);
+    }
+  }
+  for (const Vector3& along : ways_out(line.from[0], box_of(surface.pieces->hull(surface.pose)))) {
+    line.along = along;
+    WindingProof proof{0, {}};
+    append_words(proof.text, along.x, along.y, along.z);
+    proof.text += '\n';
+    const CertifiedSide other{.pieces = nullptr, .pose = {}, .points = line.from, .direction = along};
+    const auto crossing = [&](std::string& text, NetRange& piece) {
+      const auto crossed = append_crossing(text, piece, surface.pose, line, error);
+      if (crossed) proof.number += *crossed;
+      return crossed.has_value();
+    };
+    if (append_separation(proof.text, {surface, other}, 0, {max_leaves, monitor}, crossing) == Found::proof)
+      return proof;
+  }
+  return std::nullopt;
+}
+
+}  // namespace snug
