@@ -277,6 +277,24 @@ val contained_of(const std::optional<std::size_t>& side) {
   return side ? val(static_cast<unsigned>(*side)) : val::null();
 }
 
+// Where a proof is wanted: receives it, and sets it in a result.
+class Proof {
+ public:
+  explicit Proof(const val& options) : wanted_(option<bool>(options, "certificate").value_or(false)) {}
+  Run with(Run run) { return run.certificate = wanted_ ? &certificate_ : nullptr, run; }
+  void add_to(val& result) const {
+    if (!wanted_) return;
+    val object = val::object();
+    object.set("text", certificate_.text);
+    object.set("missing", certificate_.missing);
+    result.set("certificate", object);
+  }
+
+ private:
+  bool wanted_;
+  Certificate certificate_;
+};
+
 val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
   return guarded([&] {
     const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
@@ -285,7 +303,8 @@ val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
     how.tolerance = option<double>(options, "tolerance");
     how.margin = option<double>(options, "margin").value_or(0);
     how.solid = option<bool>(options, "solid").value_or(false);
-    const Collision answer = collide(a, b, how, run_of(options));
+    Proof proof(options);
+    const Collision answer = collide(a, b, how, proof.with(run_of(options)));
     val result = val::object();
     result.set("verdict", std::string(name_of(answer.verdict)));
     result.set("outcome", std::string(name_of(answer.outcome)));
@@ -293,6 +312,7 @@ val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
     add_witness(result, {&a, &b}, answer.witness ? &*answer.witness : nullptr);
     result.set("contained", contained_of(answer.contained));
     add_stats(result, answer.stats);
+    proof.add_to(result);
     return result;
   });
 }
@@ -305,13 +325,15 @@ val distance_of_parts(const Part& part_a, const Part& part_b, const val& options
     how.absolute = option<double>(options, "absolute");
     how.relative = option<double>(options, "relative");
     how.solid = option<bool>(options, "solid").value_or(false);
-    const Distance answer = distance(a, b, how, run_of(options));
+    Proof proof(options);
+    const Distance answer = distance(a, b, how, proof.with(run_of(options)));
     val result = val::object();
     result.set("outcome", std::string(name_of(answer.outcome)));
     result.set("distance", array_of(answer.distance));
     add_witness(result, {&a, &b}, &answer.witness);
     result.set("contained", contained_of(answer.contained));
     add_stats(result, answer.stats);
+    proof.add_to(result);
     return result;
   });
 }

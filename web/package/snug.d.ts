@@ -56,6 +56,8 @@ export interface PairOptions {
   /** Compare the solids that closed surfaces bound: one inside the other intersects it. */
   solid?: boolean;
   maxSplits?: number;
+  /** Prove the answer, too: docs/certificates.md. */
+  certificate?: boolean;
 }
 export interface CollideOptions extends PairOptions {
   /** Surfaces this close may be reported as within. Default: 0.1 % of the larger size. */
@@ -83,6 +85,12 @@ export interface Collision {
   /** With solid: 0 if A has a surface point inside B, 1 the other way round. */
   contained: 0 | 1 | null;
   stats: SearchStats;
+  certificate?: Certificate;
+}
+/** A proof that the program snug-check verifies, empty if there is none, and what it does not prove. */
+export interface Certificate {
+  text: string;
+  missing: string;
 }
 export interface Distance {
   distance: Interval;
@@ -92,6 +100,7 @@ export interface Distance {
   witnessAt: [WitnessPlace | null, WitnessPlace | null];
   contained: 0 | 1 | null;
   stats: SearchStats;
+  certificate?: Certificate;
 }
 export interface Penetration {
   depth: Interval;

@@ -80,6 +80,13 @@ const operations = {
       texts: { collision: texts(collision.distance), distance: texts(distance.distance) },
     };
   },
+  // Of the distance where there is one, else of what collide says.
+  proof({ a, b, poseA, poseB, tolerance, solid, apart }) {
+    const [one, other] = [parts.get(a), parts.get(b)];
+    const how = { poseA, poseB, solid, certificate: true };
+    return apart ? snug.distance(one, other, { ...how, absolute: tolerance }).certificate
+                 : snug.collide(one, other, { ...how, tolerance }).certificate;
+  },
   shape: ({ part, ...how }) => shapeOf(parts.get(part), how),
   enclosures: ({ part, level }) => parts.get(part).enclosureShapes({ level }),
   hulls({ part, tolerance }) {

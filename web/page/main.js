@@ -158,7 +158,7 @@ function show(answer) {
   });
   $("work").textContent = `${milliseconds.toFixed(1)} ms, ${collision.stats.boxTests + distance.stats.boxTests} pairs of boxes`;
   $("depth").hidden = !(answer.question.solid && collision.verdict === "intersecting");
-  $("depth-text").textContent = "";
+  $("depth-text").textContent = $("proof-text").textContent = "";
   showCommands(answer);
   compareWithFile(answer);
   overlay();
@@ -193,6 +193,24 @@ function commands({ question, percent }) {
 
 function showCommands(answer) {
   $("commands").textContent = commands(answer).join("\n\n");
+}
+
+// A file that proves the answer which is shown.
+async function downloadProof() {
+  if (!state.answer) return;
+  const { question } = state.answer;
+  try {
+    const { text, missing } = await engine.ask("proof", { ...question, apart: !inContact(state.answer) });
+    $("proof-text").textContent = missing && `${text ? "It does not prove" : "There is no proof of"} ${missing}.`;
+    if (!text) return;
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+    link.download = "snug-proof.txt";
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  } catch (error) {
+    tell(error.message);
+  }
 }
 
 // An answer that `snug view --answer` put in: what it says, and whether this page finds the same.
@@ -696,6 +714,7 @@ function listenToControls() {
       getSelection().selectAllChildren($("commands"));
     }
   };
+  $("proof").onclick = downloadProof;
   $("show-keys").onclick = () => $("keys").showModal();
   $("fault").querySelector("button").onclick = silence;
   $("example").append(...examples.map((example, i) => new Option(example.name, i)));

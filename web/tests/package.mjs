@@ -60,6 +60,20 @@ const finite = (distance) => distance.map((x) => (x === Infinity ? null : x));
 const native_bits = (r) => [r.verdict ?? r.outcome, r.distance, r.witness, r.witness_error, places(r.witness_at), Object.values(r.stats)];
 const own_bits = (r) => [r.verdict ?? r.outcome, finite(r.distance), r.witness, r.witnessError, places(r.witnessAt), Object.values(r.stats)];
 
+test("proves what the native library proves, letter by letter", () => {
+  const [bracket, pin] = [model("bracket.obj"), model("pin.obj")];
+  const proof = join(scratch, "proof.txt");
+  for (const [question, move] of [["distance", [0.05, 0.05, 0.5]], ["collide", [0, 0, 0.5]], ["collide", [9, 0, 0]]]) {
+    const poseB = snug.pose({ move });
+    const { certificate } = snug[question](bracket, pin, { poseB, certificate: true });
+    ask(question, join(models, "bracket.obj"), join(models, "pin.obj"), "--place-b", poseB.join(" "), "--certificate", proof);
+    assert.equal(certificate.missing, "");
+    assert.equal(certificate.text, readFileSync(proof, "utf8"));
+    execFileSync(join(dirname(command), "snug-check"), [proof]);
+  }
+  assert.equal(snug.distance(bracket, pin).certificate, undefined);
+});
+
 test("gives the bits of the native library to 1120 questions", () => {
   const pairs = [["bracket.obj", "pin.obj"], ["pawn.obj", "bust.obj"], ["star.obj", "ring.obj"], ["ring.obj", "ring.obj"], ["bracket.obj", "bracket.obj"],
     ["head.obj", "figure.obj"], ["bracket.obj", "pin.obj", "doo-sabin"], ["star.obj", "ring.obj", "flat"]];

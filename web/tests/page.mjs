@@ -88,6 +88,17 @@ async function holdAgainstCommand(page, folder = models) {
   }
 }
 
+test("gives a proof that snug-check accepts", { skip }, async () => {
+  const { page, close } = await open();
+  await idle(page);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#proof")]);
+  assert.equal(download.suggestedFilename(), "snug-proof.txt");
+  const says = execFileSync(join(dirname(command), "snug-check"), [await download.path()], { encoding: "utf8" });
+  assert.match(says, /proved: surface 0 .* and surface 1 /);
+  assert.equal(await page.textContent("#proof-text"), "");
+  await close();
+});
+
 const middle = (page, index) => page.evaluate((i) => {
   const { left, top } = document.getElementById("stage").getBoundingClientRect();
   const [x, y] = window.snugPage.seen(window.snugPage.middle(i));
