@@ -1,5 +1,7 @@
 #include "certificate_file.h"
 
+#include <filesystem>
+
 namespace snug::command {
 
 Option& add_certificate_option(OptionList& list, CommonOptions& options) {
@@ -24,11 +26,14 @@ void CertificateFile::add_to(Report& report, std::vector<AtomicFile*>& files) {
   }
   if (report.json()) {
     JsonWriter& json = report.write();
-    json.key("certificate").begin_object().field("file", none ? "" : name_);
+    json.key("certificate").begin_object().key("file");
+    none ? json.null() : json.value(name_);
     json.field("missing", certificate_.missing).end_object();
   }
   if (none) {
     file_.reset();
+    std::error_code ignored;
+    std::filesystem::remove(name_, ignored);  // a proof of an earlier answer
     return;
   }
   file_->write(certificate_.text);

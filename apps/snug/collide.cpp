@@ -295,7 +295,7 @@ Command collide_command() {
   list.at("--tolerance").excludes("--scene");
   list.at("--margin").excludes("--scene");
   add_pair_options(list, *options);
-  add_certificate_option(list, *options).excludes("--penetration").excludes("--resume");
+  add_certificate_option(list, *options).excludes("--penetration").excludes("--all").excludes("--resume");
   list.add(Group::own, "--all-pairs", &options->all_pairs,
            "Also list the pairs of a scene that are separated by the boxes around its parts")
       .needs("--scene");

@@ -3,7 +3,7 @@
 namespace answers {
 namespace {
 
-constexpr Index max_finer = 8;
+constexpr Index max_finer = 5;
 
 int sign_of(const Real& x) {
   return x.certainly_positive() ? 1 : (Real(0.0) - x).certainly_positive() ? -1 : 0;

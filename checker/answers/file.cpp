@@ -124,23 +124,30 @@ class File {
     std::vector<Side> parts;
     for (Index left = words_.count(most_parts); left > 0; --left) {
       if (words_.peek() != "placed") words_.refuse("a part that is no placed surface");
+      if (points_left_ < points_of_a_part) words_.refuse("more parts than this program keeps");
+      points_left_ -= points_of_a_part;
       parts.push_back(read_side());
+      parts.back().name.clear();
     }
+    most_points_ = points_left_;
     if (parts.empty()) words_.refuse("no parts");
-    std::string name = "scene of " + std::to_string(parts.size()) + " parts, sha256 " +
-                       sha256(words_.up_to_next(begin)) + ", of";
+    const std::string number = "scene " + std::to_string(scenes_++);
+    std::string name = number + " of " + std::to_string(parts.size()) + " parts, sha256 " +
+                       sha256(words_.up_to_next(begin));
     for (std::size_t i = 0; i < surfaces_.size(); ++i)
-      name += " surface " + std::to_string(i) + " (" + surfaces_[i]->name + ")";
+      name += ", of surface " + std::to_string(i) + " (" + surfaces_[i]->name + ")";
     const std::vector<std::string> sentences = prove_scene(words_, parts, least_);
     if (sentences.empty()) words_.refuse("a scene without a claim");
     for (const std::string& sentence : sentences) {
       proved_.push_back(name + ": " + sentence);
-      name = "in this scene";
+      name = number;
     }
   }
 
   static constexpr Index most_parts = 1U << 20;
+  static constexpr std::size_t points_of_a_part = 5;
   Words words_;
+  std::size_t scenes_ = 0;
   std::size_t points_left_, most_points_ = 0;  // most: when no set has made any
   std::vector<std::unique_ptr<Surface>> surfaces_;
   std::vector<std::unique_ptr<PieceSet>> all_;

@@ -15,15 +15,17 @@ class Scene {
   std::vector<std::string> prove() {
     read_order();
     while (true) {
-      if (words_.take("hulls")) {
+      if (!open_ && words_.take("hulls")) {
         prove_hulls_apart();
       } else if (words_.take("pair")) {
         const auto [i, j] = read_pair();
+        if (open_) open_->erase(std::minmax(i, j));
         Question question;
         question.sides = {parts_[i], parts_[j]};
         proved_.push_back("parts " + std::to_string(i) + " and " + std::to_string(j) + ' ' +
                           prove_claims(words_, question, least_));
       } else {
+        if (open_) say_what_is_open();
         return std::move(proved_);
       }
     }
@@ -53,7 +55,7 @@ class Scene {
   void prove_hulls_apart() {
     const double margin = words_.real();
     if (margin < 0) words_.refuse("a negative margin");
-    std::set<std::pair<Index, Index>> except;
+    std::set<std::pair<Index, Index>>& except = open_.emplace();
     std::string names;
     for (Index left = words_.count(most_pairs); left > 0; --left) {
       const auto [i, j] = read_pair();
@@ -83,12 +85,22 @@ class Scene {
                                    : "are farther apart than " + text_of(margin, false)));
   }
 
+  void say_what_is_open() {
+    std::string names;
+    for (const auto& [i, j] : *open_)
+      names += (names.empty() ? "" : ", ") + std::to_string(i) + " and " + std::to_string(j);
+    proved_.push_back(names.empty() ? "every pair of parts has a claim"
+                                    : "no claim is made about parts " + names);
+  }
+
   static constexpr Index most_pairs = 1U << 26;
   Words& words_;
   const std::vector<Side>& parts_;
   LeastSlack& least_;
   std::vector<Index> order_;
   std::vector<std::string> proved_;
+  std::optional<std::set<std::pair<Index, Index>>>
+      open_;  // pairs without a claim, once there are hulls
 };
 
 }  // namespace

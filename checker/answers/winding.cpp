@@ -81,6 +81,8 @@ std::string prove_winding(Words& words, Question& question, LeastSlack& least) {
   const std::size_t side = words.count(1);
   const Side &of_point = question.sides[side], &surface = question.sides[1 - side];
   if (!surface.pieces || !is_closed(*surface.pieces)) words.refuse("no closed surface");
+  if (!of_point.pieces && (of_point.direction || of_point.points.size() != 1))
+    words.refuse("neither a surface nor a point");
   const Place place = read_place(words, of_point);
   constexpr std::int64_t most = std::int64_t{1} << 31;
   const std::int64_t number = words.integer(-most, most);
@@ -88,6 +90,8 @@ std::string prove_winding(Words& words, Question& question, LeastSlack& least) {
   line.points.push_back(place.box);
   Point& direction = line.direction.emplace();
   for (Real& x : direction) x = Real(words.real());
+  if (std::ranges::all_of(direction, [](const Real& x) { return x.is_exactly_zero(); }))
+    words.refuse("a half-line without a direction");
   std::int64_t sum = 0;
   const Tree tree(words, {&surface, &line}, 0, least);
   tree.prove({0, 1, surface.pieces}, {1, 2}, [&](const Range& pieces, const Range&) {
@@ -95,10 +99,7 @@ std::string prove_winding(Words& words, Question& question, LeastSlack& least) {
     sum += crossings_of(words, *pieces.pieces, surface, line);
   });
   if (sum != number) words.refuse("the crossings of the line are not of this sum");
-  if (!of_point.pieces) {
-    return "are so that the " + std::string(side == 0 ? "second" : "first") + " winds " +
-           std::to_string(number) + " times around the other";
-  }
+  if (!of_point.pieces) return "have the winding number " + std::to_string(number);
   if (number != 0) question.inside = true;
   if (number == 0) question.outside[side].push_back(place.owner);
   return {};

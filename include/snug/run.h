@@ -73,8 +73,8 @@ struct Run {
   /// Budget: most splits of pieces for an answer. Searches that refine something else, such as triangles or pairs of
   /// pieces, count that. Functions name their unit, default and memory under "Budget".
   std::optional<std::uint64_t> max_splits{};
-  /// Receives a proof of the answers of collide(), distance(), closest_point() and ray(). A tenth of a second each; some seconds
-  /// for surfaces that run along each other.
+  /// Receives a proof of the answers about pairs, points, rays and scenes. A tenth of a second for a question, or pair of a scene;
+  /// some seconds for surfaces that run along each other.
   Certificate* certificate = nullptr;
 };
 

@@ -190,6 +190,11 @@ class WholeFile:
             file.write(text)
         os.replace(self._temporary, self._path)
 
+    def leave(self) -> None:
+        """There is no such file, not that of an earlier call either."""
+        if os.path.exists(self._path):
+            os.unlink(self._path)
+
     def __del__(self) -> None:
         if hasattr(self, "_handle"):
             os.close(self._handle)

@@ -11,7 +11,7 @@ CertificateFile::CertificateFile(const py::object& path) {
 void CertificateFile::write() const {
   if (!path_) return;
   const bool none = certificate_.text.empty();
-  if (!none) file_.attr("write")(certificate_.text);
+  none ? file_.attr("leave")() : file_.attr("write")(certificate_.text);
   if (certificate_.missing.empty()) return;
   const std::string text =
       *path_ + (none ? ": not written, there is no proof of " : ": does not prove ") + certificate_.missing;

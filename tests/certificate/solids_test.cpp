@@ -90,7 +90,7 @@ TEST(certificate_solids, hold_where_points_are_of_every_scheme) {
       for (std::size_t i = 0; i < points.size(); ++i) {
         ++asked;
         insides += inside[i] == true ? 1 : 0;
-        const bool winds = checked.proved[i].find("winds 0 times") == std::string::npos;
+        const bool winds = checked.proved[i].find("winding number 0") == std::string::npos;
         EXPECT_EQ(winds, inside[i] == true) << checked.proved[i];
       }
       const auto far = signed_distance(surface, points, {}, {.threads = 1, .certificate = &certificate});
@@ -119,12 +119,12 @@ TEST(certificate_solids, hold_how_often_shells_wind) {
     const Checked checked = check(certificate.text);
     return checked.refused.empty() ? checked.proved[0] : checked.refused;
   };
-  EXPECT_NE(sentence(shells, middle).find("winds 2 times"), std::string::npos) << sentence(shells, middle);
-  EXPECT_NE(sentence(reversed, middle).find("winds 0 times"), std::string::npos);
-  EXPECT_NE(sentence(reversed, {0.5, 0.45, 0.2}).find("winds 1 times"), std::string::npos);
+  EXPECT_NE(sentence(shells, middle).find("winding number 2"), std::string::npos) << sentence(shells, middle);
+  EXPECT_NE(sentence(reversed, middle).find("winding number 0"), std::string::npos);
+  EXPECT_NE(sentence(reversed, {0.5, 0.45, 0.2}).find("winding number 1"), std::string::npos);
   ControlMesh inverted;
   add(inverted, cube, -1, {1, 1, 1});
-  EXPECT_NE(sentence(inverted, middle).find("winds -1 times"), std::string::npos)
+  EXPECT_NE(sentence(inverted, middle).find("winding number -1"), std::string::npos)
       << sentence(inverted, middle);
 }
 
@@ -216,6 +216,19 @@ TEST(certificate_solids, with_faults_are_refused) {
   for (int i = 0; i < 3; ++i) start = start.substr(0, start.rfind(' '));
   start += " 0 0 0";
   expect_refused("a piece that may hold the point", lines);
+  // Without a direction the half-line would be its first point, and a proof that this is off the surface one of any number.
+  static_cast<void>(closest_point(surface, {0.45, 0.52, 0.48}, {}, {.certificate = &certificate}));
+  lines = lines_of(certificate.text);
+  const auto apart =
+      std::ranges::find_if(lines, [](const std::string& line) { return line.starts_with("apart"); });
+  const auto near =
+      std::ranges::find_if(lines, [](const std::string& line) { return line.starts_with("near"); });
+  lines.erase(near, lines.end());
+  lines.emplace_back("end");
+  *apart = "apart 0";
+  ASSERT_EQ(check(text_of(lines)).refused, "");
+  *apart = "winding 1 here 0 0 0 0";
+  EXPECT_NE(check(text_of(lines)).refused.find("without a direction"), std::string::npos);
   // A face left out: what is not closed has no inside.
   lines = whole;
   lines[at("holes 0")] = "holes 1\n5";
@@ -292,13 +305,41 @@ TEST(certificate_scenes, hold_what_is_said_of_every_pair) {
       EXPECT_EQ(counts.intersecting, meetings);
       // A sentence for the hulls, and one for each pair that they do not separate, or that has a margin of its own.
       EXPECT_GE(checked.proved.size(), 1 + meetings);
-      EXPECT_NE(checked.proved[0].find("scene of "), std::string::npos);
+      EXPECT_NE(checked.proved[0].find("scene 0 of "), std::string::npos);
       if (meetings == 0) {
         EXPECT_EQ(certificate.missing, "");
       }
       static_cast<void>(distance(scene, 0.3, {.solid = solid}, [](const PairDistance&) {},
                                  {.threads = 1, .max_splits = 1000, .certificate = &certificate}));
       ASSERT_EQ(check(certificate.text, 4'000'000).refused, "") << spacing;
+    }
+  }
+}
+
+// Coordinates that a pose cancels leave their rounding.
+TEST(certificate_solids, hold_far_from_the_origin_too) {
+  std::mt19937_64 random(89);
+  for (const double far : {0x1p10, 0x1p20, 0x1p27}) {
+    for (std::uint64_t trial = 0; trial < fewer(8); ++trial) {
+      const Surface near = closed_surface(schemes[random() % 6], random() % 4, random);
+      const Vector3 away{far * unit(random), far * unit(random), far};
+      ControlMesh moved;
+      add(moved, closed_surface(near.scheme(), random() % 4, random).mesh(), 1, away);
+      const Surface other(moved, {.scheme = near.scheme()});
+      const Motion turn = Motion::rotation({unit(random), unit(random), 1}, unit(random));
+      const double apart = std::array{0.2, 1.01, 1.5}[trial % 3];
+      const Motion pose = turn.with_offset(Vector3{apart, 0, 0} - turn.rotate(away));
+      Certificate certificate;
+      static_cast<void>(collide(near, other.at(pose), {.tolerance = 1e-3, .solid = trial % 2 == 0},
+                                {.threads = 1, .max_splits = 2000, .certificate = &certificate}));
+      if (!certificate.text.empty()) {
+        EXPECT_EQ(check(certificate.text).refused, "") << far << ' ' << trial;
+      }
+      static_cast<void>(distance(near, other.at(pose), {},
+                                 {.threads = 1, .max_splits = 2000, .certificate = &certificate}));
+      if (!certificate.text.empty()) {
+        EXPECT_EQ(check(certificate.text).refused, "") << far << ' ' << trial;
+      }
     }
   }
 }

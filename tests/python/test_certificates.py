@@ -50,7 +50,7 @@ def test_of_signed_distances_and_containment(bracket, tmp_path):
     lines = verified(path)
     assert len(lines) == 3 and verified(tmp_path / "inside.txt")
     for i, line in enumerate(lines):
-        winds = "winds 0 times" not in line
+        winds = "winding number 0" not in line
         assert winds == bool(far.upper[i] < 0) == bool(inside.inside[i])
 
 

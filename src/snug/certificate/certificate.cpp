@@ -52,7 +52,7 @@ CertifiedSide CertificateWriter::append_placed(const PlacedSurface& surface) {
   append_words(text_, index);
   for (const double x : surface.pose().numbers()) append_words(text_, x);
   text_ += '\n';
-  return {.pieces = &surfaces_[index]->all(), .pose = surface.pose(), .points = {}, .direction = {}};
+  return side_of(surfaces_[index]->all(), surface.pose());
 }
 
 void CertificateWriter::set_side(std::size_t side, const PlacedSurface& surface) {
@@ -111,6 +111,8 @@ void CertificateWriter::ask(std::span<const PlacedSurface> parts) {
 void CertificateWriter::hulls(double margin, std::set<PartNumbers>& except) {
   std::string proof;
   scene_->append(proof, margin, except, monitor_);
+  const std::size_t parts = of_parts_.size();
+  if (except.size() == parts * (parts - 1) / 2) return;  // of no pair
   text_ += "hulls ";
   append_exactly(text_, margin);
   append_words(text_, except.size());
@@ -144,7 +146,7 @@ void CertificateWriter::ask(const PlacedSurface& a, const Point3& b) {
   index_of(a.surface());
   begin_question();
   set_side(0, a);
-  sides_[1] = {.pieces = nullptr, .pose = {}, .points = {b}, .direction = {}};
+  sides_[1] = side_of({b});
   text_ += "point";
   append_words(text_, b.x, b.y, b.z);
   text_ += '\n';
@@ -158,12 +160,8 @@ void CertificateWriter::ask(const PlacedSurface& a, const Ray& b) {
   set_side(0, a);
   const auto at = [&](double t) { return b.origin + t * b.direction; };
   const bool ends = b.to < INFINITY;
-  sides_[1] = {.pieces = nullptr, .pose = {}, .points = {at(b.from)}, .direction = {}};
-  if (ends) {
-    sides_[1].points.push_back(at(b.to));
-  } else {
-    sides_[1].direction = b.direction;
-  }
+  sides_[1] = ends ? side_of({at(b.from), at(b.to)}) : side_of({at(b.from)}, b.direction);
+  sides_[1].magnitude = std::max(sides_[1].magnitude, max_abs(b.origin - Point3{}));
   text_ += "ray";
   append_words(text_, b.origin.x, b.origin.y, b.origin.z, b.direction.x, b.direction.y, b.direction.z,
                b.from);
@@ -188,11 +186,7 @@ Found CertificateWriter::apart(double margin) {
 }
 
 Found CertificateWriter::at_least(double lower) {
-  double largest = lower;
-  for (const CertifiedSide& side : sides_) {
-    const std::vector<Point3> points = side.pieces != nullptr ? side.pieces->hull(side.pose) : side.points;
-    largest = std::max(largest, largest_coordinate(points));
-  }
+  const double largest = std::max({lower, sides_[0].magnitude, sides_[1].magnitude});
   const Found found = apart(std::max(0.0, lower - 0x1p-38 * largest));
   if (found == Found::proof) return found;
   for (const double share : {0.9, 0.5, 0.0}) {
@@ -203,7 +197,7 @@ Found CertificateWriter::at_least(double lower) {
 
 Box3 CertificateWriter::append_place(std::size_t side, const Place& at) {
   const CertifiedSurface& surface = *of_sides_[side];
-  const double wanted = place_size * surface.surface().size();
+  const double wanted = std::max(place_size * surface.surface().size(), 0x1p-48 * sides_[side].magnitude);
   const std::vector<std::size_t> steps = surface.steps_to(at, max_place_steps);
   std::unique_ptr<NetRange> piece = sides_[side].pieces->only(surface.position_of(at.owner));
   Box3 box = box_of(piece->hull(sides_[side].pose));
@@ -230,7 +224,7 @@ double CertificateWriter::near(double upper, const Place& a, const Place* b) {
     text_ += "here\n";
     box_b.add(sides_[1].points[0]);
   }
-  const double noise = 0x1p-46 * (max_abs(box_a.upper - Point3{}) + max_abs(box_b.upper - Point3{}));
+  const double noise = 0x1p-46 * (sides_[0].magnitude + sides_[1].magnitude);
   const double proved = std::max(upper, farthest(box_a, box_b) * (1 + 0x1p-48) + noise);
   std::string claim = "near ";
   append_exactly(claim, proved);
@@ -258,7 +252,7 @@ std::optional<int> CertificateWriter::winding(std::size_t side, const Place* at)
     text_ += "here\n";
     point.add(sides_[side].points[0]);
   }
-  const auto proof = winding_proof(sides_[1 - side], point, monitor_);
+  const auto proof = winding_proof(sides_[1 - side], point, sides_[side].magnitude, monitor_);
   if (!proof) {
     text_.resize(before);
     return std::nullopt;

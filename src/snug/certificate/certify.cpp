@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include <snug/certificate/certificate.h>
+#include <support/error.h>
 #include <support/point.h>
 #include <support/run.h>
 
@@ -17,7 +18,7 @@ class Gaps {
   Gaps(Certificate& out, std::size_t count) : out_(out), count_(count) { out_ = {}; }
   void add(std::size_t answer, const std::string& what) {
     if (!out_.missing.empty()) return;
-    out_.missing = count_ == 1 ? what : "of answer " + std::to_string(answer) + ": " + what;
+    out_.missing = count_ == 1 ? what : "of answer " + std::to_string(answer) + ", counted from 0: " + what;
   }
   // What was looked for in vain.
   void add(std::size_t answer, const std::string& what, Found found) {
@@ -218,10 +219,27 @@ void certify(const Run& run, const Surface& surface, std::span<const Point3> poi
 
 namespace {
 
+// All that the claims about two parts follow from, but for the answer.
+struct PartsInPlace {
+  std::array<const SurfaceData*, 2> surfaces;
+  std::array<std::array<double, 12>, 2> poses;
+  friend auto operator<=>(const PartsInPlace&, const PartsInPlace&) = default;
+};
+
+PartsInPlace in_place(const PlacedSurface& a, const PlacedSurface& b) {
+  return {{a.surface().data().get(), b.surface().data().get()}, {a.pose().numbers(), b.pose().numbers()}};
+}
+
+void require_parts(const PartPair& pair, std::size_t parts) {
+  if (pair.a == pair.b || std::max(pair.a, pair.b) >= parts)
+    refuse_value("certify: an answer is about two different parts of the scene");
+}
+
 // Each pair with a question of its own, but for those whose parts lie in hulls that are apart.
 template <class Options, class PairAnswer>
 void write_scene(const Run& run, const Scene& scene, double margin, const Options& options,
                  std::span<const PairAnswer> answers) {
+  for (const PairAnswer& answer : answers) require_parts(answer.parts, scene.parts.size());
   if (run.certificate == nullptr) return;
   *run.certificate = {};
   for (const PlacedSurface& part : scene.parts) {
@@ -229,10 +247,14 @@ void write_scene(const Run& run, const Scene& scene, double margin, const Option
     if (!run.certificate->missing.empty()) return;
   }
   const auto sorted = [](const PartPair& pair) { return PartNumbers(std::minmax(pair.a, pair.b)); };
+  // A list of pairs may name two parts in both orders.
+  const auto key = [&](const PartPair& pair) {
+    return scene.pairs ? PartNumbers(pair.a, pair.b) : sorted(pair);
+  };
   std::map<PartNumbers, double> margins;
   for (const PairMargin& own : scene.margins) margins[sorted(own.parts)] = own.margin;
   std::map<PartNumbers, const PairAnswer*> answered;
-  for (const PairAnswer& answer : answers) answered[sorted(answer.parts)] = &answer;
+  for (const PairAnswer& answer : answers) answered[key(answer.parts)] = &answer;
 
   CertificateWriter writer(monitor_of(run));
   writer.ask(scene.parts);
@@ -244,26 +266,37 @@ void write_scene(const Run& run, const Scene& scene, double margin, const Option
     for (const auto& [pair, own] : margins) except.insert(pair);
     for (const auto& [pair, answer] : answered) except.insert(pair);
     writer.hulls(margin, except);
-    for (const auto& [a, b] : except) pairs.push_back({a, b});
+    for (const PartNumbers& pair : except) {
+      const auto answer = answered.find(pair);
+      pairs.push_back(answer == answered.end() ? PartPair{pair.first, pair.second} : answer->second->parts);
+    }
   }
+  // Copies of parts in one place differ in nothing but names.
+  std::map<std::pair<PartsInPlace, double>, Certificate> known;
   std::string missing;
   for (const PartPair& pair : pairs) {
-    Certificate of_pair;
-    Gaps gaps(of_pair, 1);
-    writer.pair(pair.a, pair.b);
-    Proofs proofs(writer, gaps, 0);
     const auto own = margins.find(sorted(pair));
     const double wanted = own == margins.end() ? margin : own->second;
-    if (const auto found = answered.find(sorted(pair)); found != answered.end()) {
-      Options of_this = options;
-      if constexpr (std::is_same_v<Options, CollideOptions>) of_this.margin = wanted;
-      add(proofs, of_this, found->second->answer);
+    const auto [of_pair, is_new] =
+        known.try_emplace({in_place(scene.parts[pair.a], scene.parts[pair.b]), wanted});
+    writer.pair(pair.a, pair.b);
+    if (is_new) {
+      Gaps gaps(of_pair->second, 1);
+      Proofs proofs(writer, gaps, 0);
+      if (const auto found = answered.find(key(pair)); found != answered.end()) {
+        Options of_this = options;
+        if constexpr (std::is_same_v<Options, CollideOptions>) of_this.margin = wanted;
+        add(proofs, of_this, found->second->answer);
+      } else {
+        proofs.more_than(wanted, options.solid);
+      }
+      of_pair->second.text = writer.claims();
     } else {
-      proofs.more_than(wanted, options.solid);
+      writer.add_claims(of_pair->second.text);
     }
-    if (missing.empty() && !of_pair.missing.empty()) {
-      missing =
-          "of parts " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + ": " + of_pair.missing;
+    if (missing.empty() && !of_pair->second.missing.empty()) {
+      missing = "of parts " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + ": " +
+                of_pair->second.missing;
     }
   }
   *run.certificate = {writer.finished(), missing};

@@ -56,6 +56,7 @@ struct Crossing {
   Ladder* ladder;
   std::size_t level;
   const Points& hull;
+  double magnitude;  // of both sides
 };
 
 std::optional<std::string> proof_of(Ladder& ladder, std::size_t level, const Crossing& crossing) {
@@ -64,11 +65,11 @@ std::optional<std::string> proof_of(Ladder& ladder, std::size_t level, const Cro
   std::string borders;
   for (const Points& border : disc.borders()) {
     Vector3 hint;
-    const auto w = separating_direction(border, crossing.hull, 0, hint);
+    const auto w = separating_direction(border, crossing.hull, 0, crossing.magnitude, hint);
     if (!w) return std::nullopt;
     Disc::append_border(borders, *w);
   }
-  double error = 0x1p-48 * largest_coordinate(crossing.hull);
+  double error = 0x1p-46 * crossing.magnitude;
   const Points& corners = disc.corners().points;
   const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   std::string text;
@@ -91,7 +92,7 @@ std::optional<std::string> proof_of(Ladder& ladder, std::size_t level, const Cro
       ends[side] = crossing.hull[side];
     }
     Vector3 hint = dot(normal, ends[side] - corners[0]) < 0 ? -normal : normal;
-    const auto w = separating_direction(disc.hull(), Points{ends[side]}, 0, hint);
+    const auto w = separating_direction(disc.hull(), Points{ends[side]}, 0, crossing.magnitude, hint);
     if (!w) return std::nullopt;
     append_direction(text, *w);
   }
@@ -208,6 +209,7 @@ class Places {
 bool append_at(std::string& text, const std::array<CertifiedSide, 2>& sides,
                const std::array<std::optional<PieceName>, 2>& names, std::size_t& attempts,
                const WorkMonitor& monitor) {
+  const double magnitude = std::max(sides[0].magnitude, sides[1].magnitude);
   std::array<std::optional<Ladder>, 2> ladders;
   for (std::size_t s = 0; s < 2; ++s) {
     if (names[s]) ladders[s].emplace(sides[s], *names[s]);
@@ -225,7 +227,8 @@ bool append_at(std::string& text, const std::array<CertifiedSide, 2>& sides,
               longest_side(box_of(hull)) / longest_side(box_of(ladders[s]->at(level).hull()));
           if (ratio > 0.9 || ratio < 0x1p-5) continue;
         }
-        const auto proof = proof_of(*ladders[s], level, {other ? &*other : nullptr, crossing, hull});
+        const auto proof =
+            proof_of(*ladders[s], level, {other ? &*other : nullptr, crossing, hull, magnitude});
         if (!proof) continue;
         text += "meet " + std::to_string(s) + '\n' + *proof;
         return true;

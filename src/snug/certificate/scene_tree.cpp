@@ -31,8 +31,11 @@ SceneTree::SceneTree(std::vector<CertifiedSide> parts) : parts_(std::move(parts)
 
 std::size_t SceneTree::add_node(std::size_t begin, std::size_t end) {
   const std::size_t index = nodes_.size();
-  Node node{begin, end, {}};
-  for (std::size_t i = begin; i < end; ++i) node.box.add(boxes_[order_[i]]);
+  Node node{begin, end, {}, 0};
+  for (std::size_t i = begin; i < end; ++i) {
+    node.box.add(boxes_[order_[i]]);
+    node.magnitude = std::max(node.magnitude, parts_[order_[i]].magnitude);
+  }
   nodes_.push_back(node);
   if (end - begin < 2) return index;
   const Vector3 sides = node.box.upper - node.box.lower;
@@ -63,10 +66,11 @@ void SceneTree::append_pair(std::string& text, const Node& a, const Node& b, dou
   const bool is_leaf = a.end - a.begin == 1 && b.end - b.begin == 1;
   const std::uint32_t i = order_[a.begin], j = order_[b.begin];
   Vector3 hint;
-  auto direction = separating_direction(corners_of(a.box), corners_of(b.box), margin, hint);
+  const double magnitude = std::max(a.magnitude, b.magnitude);
+  auto direction = separating_direction(corners_of(a.box), corners_of(b.box), margin, magnitude, hint);
   if (!direction && is_leaf && !except.contains(std::minmax(i, j))) {
     direction = separating_direction(parts_[i].pieces->hull(parts_[i].pose),
-                                     parts_[j].pieces->hull(parts_[j].pose), margin, hint);
+                                     parts_[j].pieces->hull(parts_[j].pose), margin, magnitude, hint);
   }
   if (direction) {
     append_direction(text, *direction);

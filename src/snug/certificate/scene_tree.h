@@ -29,6 +29,7 @@ class SceneTree {
   struct Node {
     std::size_t begin, end;
     Box3 box;
+    double magnitude;
     std::array<std::size_t, 2> halves{};
   };
   std::size_t add_node(std::size_t begin, std::size_t end);

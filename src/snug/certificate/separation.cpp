@@ -33,18 +33,36 @@ Support support_along(std::span<const Point3> a, std::span<const Point3> b, cons
   return {*q - *p, along(*q) - along(*p)};
 }
 
+double largest_coordinate(std::span<const Point3> points) {
+  double largest = 0;
+  for (const Point3& p : points) largest = std::max(largest, max_abs(p - Point3{}));
+  return largest;
+}
+
 }  // namespace
+
+CertifiedSide side_of(NetRange& pieces, const Motion& pose) {
+  CertifiedSide side{.pieces = &pieces, .pose = pose, .points = {}, .direction = {}};
+  const std::vector<Point3> points = pieces.hull({});
+  double reach = 0;
+  for (const Point3& p : points) reach = std::max(reach, length(p - Point3{}));
+  side.magnitude = reach + max_abs(pose.offset());
+  return side;
+}
+
+CertifiedSide side_of(std::vector<Point3> points, std::optional<Vector3> direction) {
+  const double magnitude = largest_coordinate(points);
+  return {.pieces = nullptr,
+          .pose = {},
+          .points = std::move(points),
+          .direction = direction,
+          .magnitude = magnitude};
+}
 
 Box3 box_of(std::span<const Point3> points) {
   Box3 box;
   for (const Point3& p : points) box.add(p);
   return box;
-}
-
-double largest_coordinate(std::span<const Point3> points) {
-  double largest = 0;
-  for (const Point3& p : points) largest = std::max(largest, max_abs(p - Point3{}));
-  return largest;
 }
 
 Extent extent_along(std::span<const Point3> points, const Vector3& w) {
@@ -67,8 +85,8 @@ Vector3 real(const Whole& w) {
 // A direction of short integers like w that separates, by more than the rounding of sums of three products of coordinates and
 // of what made them, and does not go back along a half-line.
 std::optional<Whole> rounded(std::span<const Point3> a, std::span<const Point3> b, double margin,
-                             const Vector3& w, const Vector3& along = {}) {
-  const double noise = 0x1p-46 * std::max(largest_coordinate(a), largest_coordinate(b));
+                             double magnitude, const Vector3& w, const Vector3& along = {}) {
+  const double noise = 0x1p-46 * magnitude;
   for (const double scale : {0x1p7, 0x1p15, 0x1p30}) {
     const double by = scale / max_abs(w);
     const Whole whole{std::llround(by * w.x), std::llround(by * w.y), std::llround(by * w.z)};
@@ -83,9 +101,9 @@ std::optional<Whole> rounded(std::span<const Point3> a, std::span<const Point3> 
 
 std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
                                                                 std::span<const Point3> b, double margin,
-                                                                Vector3& hint) {
+                                                                double magnitude, Vector3& hint) {
   if (length_sq(hint) > 0 && support_along(a, b, hint).gap > margin * length(hint)) {
-    if (const auto found = rounded(a, b, margin, hint)) return found;
+    if (const auto found = rounded(a, b, margin, magnitude, hint)) return found;
   }
   std::vector<Vector3> met{b[0] - a[0]};
   double best = -INFINITY;
@@ -105,7 +123,7 @@ std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const 
       hint = w;
     }
     if (gap > margin) {
-      if (const auto found = rounded(a, b, margin, w)) return found;
+      if (const auto found = rounded(a, b, margin, magnitude, w)) return found;
     }
     // The distance of the hulls is at most size |w|: no better direction is left, or none that would do.
     if (size * norm <= margin || size * norm - gap <= 1e-3 * std::fabs(size * norm - margin))
@@ -116,7 +134,7 @@ std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const 
 }
 
 std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a, const HalfLine& b,
-                                                                Vector3& hint) {
+                                                                double magnitude, Vector3& hint) {
   const double norm = length_sq(b.along);
   const auto before = [&](const Point3& p) { return dot(p - b.from[0], b.along) / norm; };
   // Seen along the line, which is a point then; else with the start alone.
@@ -125,12 +143,13 @@ std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const 
     for (Point3& p : *points) p = p - before(p) * b.along;
   }
   for (const bool whole_line : {true, false}) {
-    if (whole_line ? !separating_direction(seen, starts, 0, hint) : !separating_direction(a, b.from, 0, hint))
+    if (whole_line ? !separating_direction(seen, starts, 0, magnitude, hint)
+                   : !separating_direction(a, b.from, 0, magnitude, hint))
       continue;
     if (whole_line) hint = hint - (dot(hint, b.along) / norm) * b.along;
     for (const double tilt : {0.0, 0x1p-20, 0x1p-12, 0x1p-8, 0x1p-5}) {
       const Vector3 w = hint + (tilt * length(hint) / std::sqrt(norm)) * b.along;
-      if (const auto found = rounded(a, b.from, 0, w, b.along)) return found;
+      if (const auto found = rounded(a, b.from, 0, magnitude, w, b.along)) return found;
     }
   }
   return std::nullopt;
@@ -146,6 +165,7 @@ class Search {
 
   Found run() {
     std::vector<Pair> open{{{sides_[0].pieces, sides_[1].pieces}, sides_[1].direction.value_or(Vector3{})}};
+    const double magnitude = std::max(sides_[0].magnitude, sides_[1].magnitude);
     std::size_t leaves = 0;
     bool in_word = false;
     while (!open.empty()) {
@@ -155,8 +175,8 @@ class Search {
       const auto& a = points_of(0, pair.of[0]);
       const auto& b = points_of(1, pair.of[1]);
       const auto direction = sides_[1].direction
-                                 ? separating_direction(a, {b, *sides_[1].direction}, pair.hint)
-                                 : separating_direction(a, b, margin_, pair.hint);
+                                 ? separating_direction(a, {b, *sides_[1].direction}, magnitude, pair.hint)
+                                 : separating_direction(a, b, margin_, magnitude, pair.hint);
       if (direction) {
         if (++leaves > limits_.leaves) return Found::too_many_leaves;
         if (in_word) text_ += ' ';

@@ -15,7 +15,11 @@ struct CertifiedSide {
   Motion pose;
   std::vector<Point3> points;
   std::optional<Vector3> direction;
+  /// No coordinate on the way to where the points are placed is larger: what rounding is a share of.
+  double magnitude = 0;
 };
+[[nodiscard]] CertifiedSide side_of(NetRange& pieces, const Motion& pose);
+[[nodiscard]] CertifiedSide side_of(std::vector<Point3> points, std::optional<Vector3> direction = {});
 
 /// What a search for a proof may cost, and what stops it.
 struct ProofLimits {
@@ -46,13 +50,14 @@ struct Extent {
 [[nodiscard]] Extent extent_along(std::span<const Point3> points, const Vector3& w);
 
 [[nodiscard]] Box3 box_of(std::span<const Point3> points);
-[[nodiscard]] double largest_coordinate(std::span<const Point3> points);
 
-/// A direction of integers with `b` farther along than `a` by more than `margin`, and by more than rounding; nothing if
-/// none is found. `hint` is tried first, and is then the direction in which the two were separated best.
+/// A direction of integers with `b` farther along than `a` by more than `margin`, and by more than the rounding of points
+/// whose coordinates are up to `magnitude`; nothing if none is found. `hint` is tried first, and is then the direction in which
+/// the two were separated best.
 [[nodiscard]] std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
                                                                               std::span<const Point3> b,
-                                                                              double margin, Vector3& hint);
+                                                                              double margin, double magnitude,
+                                                                              Vector3& hint);
 /// A half-line from one of these points, all of which are meant.
 struct HalfLine {
   std::vector<Point3> from;
@@ -61,6 +66,7 @@ struct HalfLine {
 /// The same with a half-line for `b` and no margin.
 [[nodiscard]] std::optional<std::array<std::int64_t, 3>> separating_direction(std::span<const Point3> a,
                                                                               const HalfLine& b,
+                                                                              double magnitude,
                                                                               Vector3& hint);
 
 }  // namespace snug

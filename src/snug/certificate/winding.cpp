@@ -38,18 +38,18 @@ std::vector<Vector3> ways_out(const Point3& from, const Box3& of) {
 
 // That a piece crosses a half-line so many times, by sign.
 std::optional<int> append_crossing(std::string& text, NetRange& piece, const Motion& pose,
-                                   const HalfLine& line, double error) {
+                                   const HalfLine& line, double magnitude, double error) {
   Disc disc(piece.only(0), pose);
   if (!disc.is_simple()) return std::nullopt;
   std::string proof = "x";
   Disc::append_steps_of_hull(proof);
   Vector3 hint;
-  const auto off_start = separating_direction(disc.hull(), line.from, 0, hint);
+  const auto off_start = separating_direction(disc.hull(), line.from, 0, magnitude, hint);
   if (!off_start) return std::nullopt;
   append_direction(proof, *off_start);
   for (const std::vector<Point3>& border : disc.borders()) {
     Vector3 best;
-    const auto w = separating_direction(border, line, best);
+    const auto w = separating_direction(border, line, magnitude, best);
     if (!w) return std::nullopt;
     Disc::append_border(proof, *w);
   }
@@ -62,11 +62,12 @@ std::optional<int> append_crossing(std::string& text, NetRange& piece, const Mot
 
 }  // namespace
 
-std::optional<WindingProof> winding_proof(const CertifiedSide& surface, const Box3& point,
+std::optional<WindingProof> winding_proof(const CertifiedSide& surface, const Box3& point, double magnitude,
                                           const WorkMonitor& monitor) {
   const Vector3 sides = point.upper - point.lower;
   HalfLine line{{point.lower + 0.5 * sides}, {}};
-  const double error = longest_side(point) + 0x1p-48 * largest_coordinate(line.from);
+  magnitude = std::max(magnitude, surface.magnitude);
+  const double error = longest_side(point) + 0x1p-46 * magnitude;
   if (longest_side(point) > 0) {
     for (unsigned corner = 0; corner < 8; ++corner) {
       Point3 p = point.lower;
@@ -81,9 +82,10 @@ std::optional<WindingProof> winding_proof(const CertifiedSide& surface, const Bo
     WindingProof proof{0, {}};
     append_words(proof.text, along.x, along.y, along.z);
     proof.text += '\n';
-    const CertifiedSide other{.pieces = nullptr, .pose = {}, .points = line.from, .direction = along};
+    CertifiedSide other = side_of(line.from, along);
+    other.magnitude = magnitude;
     const auto crossing = [&](std::string& text, NetRange& piece) {
-      const auto crossed = append_crossing(text, piece, surface.pose, line, error);
+      const auto crossed = append_crossing(text, piece, surface.pose, line, magnitude, error);
       if (crossed) proof.number += *crossed;
       return crossed.has_value();
     };

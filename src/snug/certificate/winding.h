@@ -13,8 +13,8 @@ struct WindingProof {
   std::string text;  ///< a direction and a tree, as docs/certificates.md has it
 };
 
-/// All points of a box are meant. Nothing if no proof was found.
+/// All points of a box are meant, that come from coordinates up to `magnitude`. Nothing if no proof was found.
 [[nodiscard]] std::optional<WindingProof> winding_proof(const CertifiedSide& surface, const Box3& point,
-                                                        const WorkMonitor& monitor);
+                                                        double magnitude, const WorkMonitor& monitor);
 
 }  // namespace snug
