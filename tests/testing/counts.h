@@ -15,11 +15,11 @@ namespace snug::testing {
 #endif
 }
 
-/// The number that the environment gives, or SNUG_TIMES times the full one if that is set, or half of the full one, or fewer.
-[[nodiscard]] inline std::uint64_t number_of(const char* variable, std::uint64_t full) {
+/// The number that the environment gives, or the usual one, SNUG_TIMES times as large if that is set, or fewer.
+[[nodiscard]] inline std::uint64_t number_of(const char* variable, std::uint64_t usual) {
   if (const char* const text = std::getenv(variable)) return std::strtoull(text, nullptr, 10);
   const char* const times = std::getenv("SNUG_TIMES");
-  return times ? full * std::strtoull(times, nullptr, 10) : fewer((full + 1) / 2);
+  return times ? usual * std::strtoull(times, nullptr, 10) : fewer(usual);
 }
 
 }  // namespace snug::testing
