@@ -157,7 +157,7 @@ Point3 behind(const Triangle& t, const Ball& ball, std::mt19937_64& random) {
 }
 
 TEST(cycles, of_smooth_schemes_wind_as_refined_meshes_do) {
-  const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", 6000) / 40,
+  const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", 3000) / 40,
                       first = testing::number_of("SNUG_FIRST", 0);
   std::size_t asked = 0, untold = 0, refused = 0, not_manifold = 0, cuts = 0;
   std::map<int, std::size_t> numbers;
@@ -202,7 +202,7 @@ TEST(cycles, of_smooth_schemes_wind_as_refined_meshes_do) {
 }
 
 TEST(cycles, of_facets_wind_as_exact_polyhedra_do) {
-  const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", 6000) / 40,
+  const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", 3000) / 40,
                       first = testing::number_of("SNUG_FIRST", 0);
   std::size_t asked = 0, untold = 0, refused = 0;
   std::map<int, std::size_t> numbers;

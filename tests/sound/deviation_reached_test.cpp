@@ -123,7 +123,7 @@ void check(const Surface& surface, const Candidate& candidate, double precision,
 }
 
 TEST(deviation, of_extraordinary_corners_is_reached_unless_the_budget_is_spent) {
-  const std::uint64_t trials = number_of("SNUG_PLACEMENTS", 400), first = number_of("SNUG_FIRST", 0);
+  const std::uint64_t trials = number_of("SNUG_PLACEMENTS", 200), first = number_of("SNUG_FIRST", 0);
   Reached counts;
   constexpr std::array sizes{0.01, 0.1, 0.5, 2.0}, aways{0.0, 0.1, 1.0, 3.0};
   testing::PairsDrawn pairs({schemes.size(), precisions.size(), sizes.size(), aways.size()});

@@ -233,7 +233,7 @@ class GraphTrials {
 TEST(rays, locate_every_crossing_of_quadratic_graphs) {
   constexpr std::uint64_t rays_a_mesh = 100;
   const std::uint64_t first = number_of("SNUG_FIRST", 0),
-                      meshes = (number_of("SNUG_PLACEMENTS", 10'000) + rays_a_mesh - 1) / rays_a_mesh;
+                      meshes = (number_of("SNUG_PLACEMENTS", 5000) + rays_a_mesh - 1) / rays_a_mesh;
   constexpr std::array schemes{Scheme::bilinear, Scheme::midedge, Scheme::doo_sabin, Scheme::catmark,
                                Scheme::loop};
   Counts counts;

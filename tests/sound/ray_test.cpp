@@ -439,7 +439,7 @@ class FlatTrials {
 TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
   constexpr std::uint64_t rays_a_solid = 200;
   const std::uint64_t first = number_of("SNUG_FIRST", 0),
-                      solids = (number_of("SNUG_PLACEMENTS", 4000) + rays_a_solid - 1) / rays_a_solid;
+                      solids = (number_of("SNUG_PLACEMENTS", 2000) + rays_a_solid - 1) / rays_a_solid;
   Counted counted;
   std::uint64_t refused = 0;
   for (std::uint64_t i = 0; i < solids && !HasFailure(); ++i) {
@@ -861,7 +861,7 @@ CurvedCase closed_case(std::uint64_t number) {
 TEST(rays, aimed_at_closed_surfaces_miss_none) {
   constexpr std::uint64_t rays_a_surface = 100;
   const std::uint64_t first = number_of("SNUG_FIRST", 0),
-                      surfaces = (number_of("SNUG_PLACEMENTS", 4000) + rays_a_surface - 1) / rays_a_surface;
+                      surfaces = (number_of("SNUG_PLACEMENTS", 2000) + rays_a_surface - 1) / rays_a_surface;
   CurvedCounts counts;
   std::uint64_t refused = 0, open = 0;
   for (std::uint64_t i = first; i < first + surfaces && !HasFailure(); ++i) {

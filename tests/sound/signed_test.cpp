@@ -53,7 +53,7 @@ std::vector<Point3> limit_points_of(const testing::SolidCase& c) {
 }
 
 TEST(signed_distance, agrees_with_refined_meshes) {
-  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 20'000) + points_a_solid - 1) / points_a_solid;
+  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 10'000) + points_a_solid - 1) / points_a_solid;
   const std::uint64_t first = number_of("SNUG_FIRST", 0);
   std::size_t asked = 0, told = 0, inside = 0, unreached = 0;
   double widest = 0;
@@ -126,7 +126,7 @@ ControlMesh sharp_mesh(const oracle::TaggedMesh& shape) {
 }
 
 TEST(signed_distance, of_sharp_polyhedra_is_exact) {
-  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 20'000) + 999) / 1000;
+  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 10'000) + 999) / 1000;
   std::size_t asked = 0, on_surface = 0, inside = 0, untold = 0;
   for (std::uint64_t i = 0; i < solids && !HasFailure(); ++i) {
     std::mt19937_64 random(i + 77);

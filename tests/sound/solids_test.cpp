@@ -180,7 +180,7 @@ class Trials {
 };
 
 TEST(solids, winding_numbers_are_those_of_refined_meshes) {
-  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 8000) + points_a_solid - 1) / points_a_solid;
+  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 4000) + points_a_solid - 1) / points_a_solid;
   const std::uint64_t first = number_of("SNUG_FIRST", 0);
   std::uint64_t refused = 0;
   for (std::uint64_t i = 0; i < solids && !HasFailure(); ++i) {
