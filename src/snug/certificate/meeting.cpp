@@ -15,8 +15,8 @@ namespace {
 using Points = std::vector<Point3>;
 
 constexpr std::size_t max_piece_level = 20;
-constexpr std::size_t max_places = 40;  // where contact is looked for
-constexpr std::size_t max_attempts = 3'000;
+constexpr std::size_t max_places = 120;  // where contact is looked for
+constexpr std::size_t max_attempts = 10'000;
 constexpr std::size_t max_visits = 300;  // of pairs on the way to one of them
 constexpr std::size_t place_level = 12;  // of the pieces there
 
@@ -220,13 +220,14 @@ bool append_at(std::string& text, const std::array<CertifiedSide, 2>& sides,
     for (std::size_t level = 0; level < ladders[s]->levels(); ++level) {
       for (std::size_t crossing = 0; crossing < (other ? other->levels() : 1); ++crossing) {
         monitor.checkpoint();
-        if (attempts-- == 0) return attempts = 0, false;
         const Points& hull = other ? other->at(crossing).hull() : sides[1 - s].points;
         if (other) {  // what crosses a disc is smaller, and longer than the disc is thick
           const double ratio =
               longest_side(box_of(hull)) / longest_side(box_of(ladders[s]->at(level).hull()));
           if (ratio > 0.9 || ratio < 0x1p-5) continue;
         }
+        if (attempts == 0) return false;
+        --attempts;
         const auto proof =
             proof_of(*ladders[s], level, {other ? &*other : nullptr, crossing, hull, magnitude});
         if (!proof) continue;
