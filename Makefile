@@ -94,9 +94,9 @@ peers:  ## builds the measurements and the comparisons with other programs, in b
 	@scripts/install_packages build test bench python
 	@$(call build,bench)
 
-asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer
+asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer; ASAN_WITHOUT: those of these names
 	@$(call build,asan,tests_fast)
-	@$(ctest) --preset asan -L fast
+	@$(ctest) --preset asan -L fast $(if $(ASAN_WITHOUT),-E "$(ASAN_WITHOUT)")
 
 tsan: install-packages  ## the tests of threads under thread sanitizer
 	@$(call build,tsan,threads_test)
