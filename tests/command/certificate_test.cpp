@@ -78,7 +78,7 @@ TEST_F(certificates, of_a_scene_hold_every_pair) {
   EXPECT_TRUE(says(touch[2], "every pair of parts has a claim")) << touch[2];
   expect_complete();
   const auto far = proved({"distance", "--scene", file, "--limit", "20"});
-  EXPECT_GE(far.size(), 7U);
+  EXPECT_EQ(far.size(), 6U);  // all pairs have an answer
   expect_complete();
 }
 
