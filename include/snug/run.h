@@ -60,9 +60,8 @@ class Workspace;
 
 /// A proof of an answer as text, which the program snug-check verifies without trusting snug: docs/certificates.md.
 struct Certificate {
-  std::string text;  ///< empty where nothing of the answer has a proof
-  std::string
-      missing;  ///< what the text does not prove: the rest of "does not prove ..."; empty if it proves all
+  std::string text;     ///< empty where nothing of the answer has a proof
+  std::string missing;  ///< the rest of "does not prove ..."; empty if it proves all
 };
 
 /// How a function is to work: the last argument of all that take long. Only `max_splits` may change an answer.
@@ -73,8 +72,7 @@ struct Run {
   /// Budget: most splits of pieces for an answer. Searches that refine something else, such as triangles or pairs of
   /// pieces, count that. Functions name their unit, default and memory under "Budget".
   std::optional<std::uint64_t> max_splits{};
-  /// Receives a proof of the answers about pairs, points, rays and scenes. A tenth of a second for a question, or pair of a scene;
-  /// some seconds for surfaces that run along each other.
+  /// Receives a proof of the answers: a tenth of a second each, some seconds for surfaces that run along each other.
   Certificate* certificate = nullptr;
 };
 

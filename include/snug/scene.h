@@ -26,9 +26,8 @@ struct PairMargin {
 /// Parts, and the pairs of them to query. Parts that share a Surface share its preparation and take 120 bytes each.
 struct Scene {
   std::vector<PlacedSurface> parts;
-  std::optional<std::vector<PartPair>>
-      pairs{};                        ///< default: every two parts, a < b, in the order of their indices
-  std::vector<PairMargin> margins{};  ///< at most one for any two parts
+  std::optional<std::vector<PartPair>> pairs{};  ///< default: all, a < b, in the order of their indices
+  std::vector<PairMargin> margins{};             ///< at most one for any two parts
 };
 
 /// A pair of a scene.
@@ -41,12 +40,10 @@ struct ScenePair {
 
 /// The broad phase: the pairs of a scene that may be within their margins of each other, in the order of Scene::pairs.
 ///
-/// Guarantee: a pair that is not returned is farther apart than its margin, in exact arithmetic for the given
-///            doubles, and so are the solids that closed parts bound.
-/// Errors:    InputError: (value) naming the pair or margin, for an index that no part has, a part paired with itself, a
-///            second margin for a pair, or a bad margin; (refused) naming the part, if it has no limit surface. Interrupted.
-/// Cost:      to construct: Surface::prepare(), one to four microseconds and 200 bytes per part; then some hundred
-///            nanoseconds per part and per returned pair (bench/results/scenes.txt).
+/// Guarantee: a pair that is not returned is farther apart than its margin, in exact arithmetic, and so are the solids.
+/// Errors:    InputError: (value) for an index that no part has, a part paired with itself, a second or a bad margin;
+///            (refused) for a part without a limit surface; each is named. Interrupted.
+/// Cost:      Surface::prepare(), some microseconds and 200 bytes per part; then less per pair (bench/results/scenes.txt).
 class SNUG_API SceneBroadPhase {
  public:
   /// `margin`: for pairs that Scene::margins does not name; `all`: also return pairs that boxes separate.
@@ -74,8 +71,7 @@ class SNUG_API SceneBroadPhase {
 struct SceneCounts {
   std::uint64_t pairs = 0;               ///< all pairs queried
   std::uint64_t separated_by_boxes = 0;  ///< proved by the broad phase alone, and not passed on
-  /// Of the other pairs, by verdict. distance() does not pass on pairs beyond the limit, and counts them as
-  /// separated; it counts proved contact as intersecting.
+  /// Of the others, by verdict; distance() counts pairs beyond the limit as separated, proved contact as intersecting.
   std::uint64_t separated = 0, within = 0, intersecting = 0, undecided = 0;
 };
 
@@ -91,14 +87,11 @@ struct PairCollision {
   PartPair parts;
   Collision answer;
 };
-
-/// Run::certificate of a scene, for callers that share out pairs themselves. Pairs without an answer are farther apart than
-/// their margins, and so are the solids.
+/// Run::certificate, for callers that share out pairs. Those without an answer are farther apart than their margins.
 SNUG_API void certify(const Scene& scene, const CollideOptions& options,
                       std::span<const PairCollision> answers, const Run& run);
 
-/// Which parts of a scene touch? Passes the pairs that boxes do not separate to `sink`, in the order of Scene::pairs, each as soon as all pairs
-/// before it are answered, and on one thread at a time.
+/// Which parts touch? Passes pairs that boxes do not separate to `sink`, in order and on one thread at a time.
 ///
 /// Guarantee: each answer is bit-identical to that of collide() for the two parts.
 /// Errors:    those of SceneBroadPhase and collide(), naming the parts, and whatever `sink` throws.
@@ -110,7 +103,6 @@ struct PairDistance {
   PartPair parts;
   Distance answer;
 };
-
 /// The same of distances. Pairs without an answer are farther apart than `limit`.
 SNUG_API void certify(const Scene& scene, double limit, const DistanceOptions& options,
                       std::span<const PairDistance> answers, const Run& run);
