@@ -9,6 +9,8 @@
 #include <testing/disguised_surfaces.h>
 #include <testing/surfaces.h>
 
+#include <sstream>
+
 /// Answers with their proofs, and what the checker says of these.
 namespace snug::testing {
 
@@ -26,6 +28,19 @@ struct Checked {
     result.refused = rejected.what();
   }
   return result;
+}
+
+using Lines = std::vector<std::string>;
+[[nodiscard]] inline Lines lines_of(const std::string& text) {
+  Lines lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+[[nodiscard]] inline std::string text_of(const Lines& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  return text;
 }
 
 /// Every third of the surfaces of every scheme, flat and bilinear ones too, with tags of every sort; all of them, and of more seeds, if

@@ -10,21 +10,6 @@ namespace {
 
 using namespace snug::testing;
 
-using Lines = std::vector<std::string>;
-
-Lines lines_of(const std::string& text) {
-  Lines lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-std::string text_of(const Lines& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + '\n';
-  return text;
-}
-
 // The n-th line that begins so; the number of lines if there is none.
 std::size_t find(const Lines& lines, const std::string& begin, int n = 0) {
   for (std::size_t i = 0; i < lines.size(); ++i) {

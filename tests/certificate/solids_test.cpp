@@ -59,19 +59,6 @@ void add(ControlMesh& to, const ControlMesh& part, double scale, const Vector3& 
   }
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-std::string text_of(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + '\n';
-  return text;
-}
-
 TEST(certificate_solids, hold_where_points_are_of_every_scheme) {
   std::mt19937_64 random(81);
   std::size_t asked = 0, insides = 0;
@@ -217,6 +204,19 @@ TEST(certificate_solids, with_faults_are_refused) {
   for (int i = 0; i < 3; ++i) start = start.substr(0, start.rfind(' '));
   start += " 0 0 0";
   expect_refused("a piece that may hold the point", lines);
+  // What holds the piece off the point does not hold its borders off the half-line, which leads to it.
+  std::istringstream words(whole[crossing].substr(whole[crossing].find('x')));
+  std::string word;
+  std::array<long, 3> w{};
+  words >> word >> word >> w[0] >> w[1] >> w[2];
+  for (const long sign : {1, -1}) {
+    lines = whole;
+    for (std::size_t k = 1; k <= 4; ++k) {
+      lines[crossing + k] = "border 4 " + std::to_string(sign * w[0]) + ' ' + std::to_string(sign * w[1]) +
+                            ' ' + std::to_string(sign * w[2]);
+    }
+    EXPECT_NE(check(text_of(lines)).refused.find("not held off the line"), std::string::npos);
+  }
   // Without a direction the half-line would be its first point, and a proof that this is off the surface one of any number.
   static_cast<void>(closest_point(surface, {0.45, 0.52, 0.48}, {}, {.certificate = &certificate}));
   lines = lines_of(certificate.text);
@@ -264,11 +264,79 @@ TEST(certificate_solids, with_a_component_left_out_are_refused) {
                 lines.begin() + static_cast<std::ptrdiff_t>(claims[k + 1]));
     EXPECT_NE(check(text_of(lines)).refused.find("of all components"), std::string::npos);
   }
+  // Nor are they where nothing is known of their surfaces.
+  std::vector<std::string> unknown = whole;
+  std::size_t apart = 0;
+  while (!whole[apart].starts_with("apart")) ++apart;
+  unknown.erase(unknown.begin() + static_cast<std::ptrdiff_t>(apart),
+                unknown.begin() + static_cast<std::ptrdiff_t>(claims[0]));
+  EXPECT_NE(check(text_of(unknown)).refused.find("of all components"), std::string::npos);
   // Solids are not apart because their surfaces are.
   std::vector<std::string> lines = whole;
   lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(claims[0]),
               lines.begin() + static_cast<std::ptrdiff_t>(end));
   EXPECT_NE(check(text_of(lines)).refused, "");
+}
+
+// A surface has an inside if as many faces run one way along each edge as the other, and none is missing.
+TEST(certificate_solids, are_of_closed_surfaces_alone) {
+  ControlMesh two = control_mesh(meshes::cube());  // boxes that share an edge
+  two.points.insert(two.points.end(), {{2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {2, 1, 1}, {2, 2, 1}, {1, 2, 1}});
+  for (const auto& face : {std::array{3u, 10u, 9u, 8u},
+                           {7u, 11u, 12u, 13u},
+                           {3u, 8u, 11u, 7u},
+                           {8u, 9u, 12u, 11u},
+                           {9u, 10u, 13u, 12u},
+                           {10u, 3u, 7u, 13u}}) {
+    two.add_face(std::array{VertexId(face[0]), VertexId(face[1]), VertexId(face[2]), VertexId(face[3])});
+  }
+  ControlMesh hole = control_mesh(meshes::cube());
+  hole.tags.holes.push_back(FaceId(2u));
+  struct Sort {
+    const char* name;
+    ControlMesh mesh;
+    bool closed;
+  };
+  const auto plain = [](const oracle::TaggedMesh& mesh) { return control_mesh(mesh); };
+  const std::vector<Sort> sorts{{"cube", plain(meshes::cube()), true},
+                                {"prism", plain(meshes::prism(7)), true},
+                                {"at a vertex", plain(meshes::two_cubes_at_a_vertex()), true},
+                                {"at an edge", two, true},
+                                {"two quads", plain(meshes::back_to_back()), true},
+                                {"hole", hole, false},
+                                {"strip", plain(meshes::mixed_strip()), false},
+                                {"moebius", plain(meshes::moebius(5)), false},
+                                {"same ways", plain(meshes::same_ways()), false},
+                                {"book", plain(meshes::book(3)), false}};
+  for (const Sort& sort : sorts) {
+    for (const Scheme scheme : {Scheme::catmark, Scheme::bilinear, Scheme::doo_sabin}) {
+      for (const BoundaryRule rule : {BoundaryRule::edge_only, BoundaryRule::none}) {
+        const std::string what = std::string(sort.name) + ' ' + name_of(scheme);
+        Certificate certificate;
+        try {
+          const Surface surface(sort.mesh, {.scheme = scheme, .boundary = rule});
+          static_cast<void>(closest_point(surface, Point3{30, 200, 100}, {}, {.certificate = &certificate}));
+        } catch (const InputError&) {
+          continue;  // the scheme has no such surface
+        }
+        Lines lines = lines_of(certificate.text);
+        std::size_t claim = 0;
+        while (!lines[claim].starts_with("apart")) ++claim;
+        std::size_t next = claim;
+        while (!lines[next].starts_with("near")) ++next;
+        lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(next), lines.end());
+        lines.emplace_back("end");
+        lines[claim] = "winding 1 here 0 30 200 100";  // away from the surface
+        // Doo-Sabin's surface has no holes.
+        const bool closed = sort.closed || (scheme == Scheme::doo_sabin && !sort.mesh.tags.holes.empty());
+        const std::string refused = check(text_of(lines)).refused;
+        EXPECT_EQ(refused.find("no closed surface") == std::string::npos, closed) << what << ": " << refused;
+        if (closed) {
+          EXPECT_EQ(refused, "") << what;
+        }
+      }
+    }
+  }
 }
 
 Scene grid_of(const std::vector<Surface>& surfaces, std::size_t side, double spacing, std::uint64_t seed) {
