@@ -87,7 +87,7 @@ struct PairCollision {
   PartPair parts;
   Collision answer;
 };
-/// Run::certificate, for callers that share out pairs. Those without an answer are farther apart than their margins.
+/// Run::certificate, for callers that share out pairs; others are farther apart than their margins. InputError (value): no such part.
 SNUG_API void certify(const Scene& scene, const CollideOptions& options,
                       std::span<const PairCollision> answers, const Run& run);
 

@@ -78,7 +78,7 @@ void CertifiedSurface::find_owners() {
     }
     if (!has_none[i]) order_.push_back(static_cast<std::uint32_t>(i));
   }
-  sort(0, order_.size(), middles);
+  sort_in_halves(order_, middles);
   positions_.assign(count, order_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) positions_[order_[i]] = i;
   net_->owners = order_;
@@ -90,19 +90,19 @@ void CertifiedSurface::find_owners() {
   }
 }
 
-void CertifiedSurface::sort(std::size_t begin, std::size_t end, std::span<const Point3> middles) {
-  if (end - begin < 2) return;
+void sort_in_halves(std::span<std::uint32_t> order, std::span<const Point3> middles) {
+  if (order.size() < 2) return;
   Box3 box;
-  for (std::size_t i = begin; i < end; ++i) box.add(middles[order_[i]]);
+  for (const std::uint32_t i : order) box.add(middles[i]);
   const Vector3 sides = box.upper - box.lower;
   const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-  const std::size_t middle = begin + (end - begin) / 2;
-  const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(middles[a][axis], a) < std::pair(middles[b][axis], b);
-  });
-  sort(begin, middle, middles);
-  sort(middle, end, middles);
+  const std::size_t middle = order.size() / 2;
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return std::pair(middles[a][axis], a) < std::pair(middles[b][axis], b);
+                   });
+  sort_in_halves(order.first(middle), middles);
+  sort_in_halves(order.subspan(middle), middles);
 }
 
 void CertifiedSurface::write(std::string& text) const {

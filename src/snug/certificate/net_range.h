@@ -69,6 +69,9 @@ class NetRange {
   std::unique_ptr<NetRange> halves_[2], finer_;
 };
 
+/// Sorts numbers so that the halves lie apart, and their halves; `middles`: where each number lies.
+void sort_in_halves(std::span<std::uint32_t> order, std::span<const Point3> middles);
+
 /// A surface as certificates have it: its owners in an order whose halves lie apart.
 class CertifiedSurface {
  public:
@@ -92,7 +95,6 @@ class CertifiedSurface {
 
  private:
   void find_owners();
-  void sort(std::size_t begin, std::size_t end, std::span<const Point3> middles);
 
   Surface surface_;
   SchemeOptions options_;

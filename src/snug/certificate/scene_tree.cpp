@@ -8,24 +8,12 @@
 #include <support/run.h>
 
 namespace snug {
-namespace {
-
-std::vector<Point3> corners_of(const Box3& box) {
-  std::vector<Point3> corners;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    Point3& p = corners.emplace_back(box.lower);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if ((corner >> axis & 1U) != 0) p[axis] = box.upper[axis];
-    }
-  }
-  return corners;
-}
-
-}  // namespace
-
 SceneTree::SceneTree(std::vector<CertifiedSide> parts) : parts_(std::move(parts)), order_(parts_.size()) {
   for (const CertifiedSide& part : parts_) boxes_.push_back(box_of(part.pieces->hull(part.pose)));
   std::iota(order_.begin(), order_.end(), 0U);
+  std::vector<Point3> middles;
+  for (const Box3& box : boxes_) middles.push_back(box.lower + 0.5 * (box.upper - box.lower));
+  sort_in_halves(order_, middles);
   if (!parts_.empty()) add_node(0, parts_.size());
 }
 
@@ -38,15 +26,7 @@ std::size_t SceneTree::add_node(std::size_t begin, std::size_t end) {
   }
   nodes_.push_back(node);
   if (end - begin < 2) return index;
-  const Vector3 sides = node.box.upper - node.box.lower;
-  const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
   const std::size_t middle = begin + (end - begin) / 2;
-  const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-  const auto key = [&](std::uint32_t i) {
-    return std::pair(boxes_[i].lower[axis] + boxes_[i].upper[axis], i);
-  };
-  std::nth_element(at(begin), at(middle), at(end),
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   const std::size_t first = add_node(begin, middle), second = add_node(middle, end);
   nodes_[index].halves = {first, second};
   return index;

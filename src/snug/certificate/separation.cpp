@@ -65,6 +65,17 @@ Box3 box_of(std::span<const Point3> points) {
   return box;
 }
 
+std::vector<Point3> corners_of(const Box3& box) {
+  std::vector<Point3> corners;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Point3& p = corners.emplace_back(box.lower);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1U) != 0) p[axis] = box.upper[axis];
+    }
+  }
+  return corners;
+}
+
 Extent extent_along(std::span<const Point3> points, const Vector3& w) {
   Extent extent{INFINITY, -INFINITY};
   for (const Point3& p : points) {

@@ -50,6 +50,7 @@ struct Extent {
 [[nodiscard]] Extent extent_along(std::span<const Point3> points, const Vector3& w);
 
 [[nodiscard]] Box3 box_of(std::span<const Point3> points);
+[[nodiscard]] std::vector<Point3> corners_of(const Box3& box);
 
 /// A direction of integers with `b` farther along than `a` by more than `margin`, and by more than the rounding of points
 /// whose coordinates are up to `magnitude`; nothing if none is found. `hint` is tried first, and is then the direction in which

@@ -69,13 +69,8 @@ std::optional<WindingProof> winding_proof(const CertifiedSide& surface, const Bo
   magnitude = std::max(magnitude, surface.magnitude);
   const double error = longest_side(point) + 0x1p-46 * magnitude;
   if (longest_side(point) > 0) {
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      Point3 p = point.lower;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if ((corner >> axis & 1U) != 0) p[axis] = point.upper[axis];
-      }
-      line.from.push_back(p);
-    }
+    const std::vector<Point3> corners = corners_of(point);
+    line.from.insert(line.from.end(), corners.begin(), corners.end());
   }
   for (const Vector3& along : ways_out(line.from[0], box_of(surface.pieces->hull(surface.pose)))) {
     line.along = along;
