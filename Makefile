@@ -6,6 +6,7 @@ SHELL := bash
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
 
+space := $(subst ,, )
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
@@ -94,9 +95,9 @@ peers:  ## builds the measurements and the comparisons with other programs, in b
 	@scripts/install_packages build test bench python
 	@$(call build,bench)
 
-asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer; ASAN_WITHOUT: those of these names
-	@$(call build,asan,tests_fast)
-	@$(ctest) --preset asan -L fast $(if $(ASAN_WITHOUT),-E "$(ASAN_WITHOUT)")
+asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer; ASAN_ROOMS="io mesh": those of these folders
+	@$(call build,asan,$(or $(ASAN_ROOMS:%=%_test),tests_fast))
+	@$(ctest) --preset asan -L fast -R "^($(subst $(space),|,$(or $(strip $(ASAN_ROOMS)),.*)))[.]"
 
 tsan: install-packages  ## the tests of threads under thread sanitizer
 	@$(call build,tsan,threads_test)

@@ -100,7 +100,7 @@ class Checks {
     std::uint64_t most = usual;
     for (std::size_t s = 0; s < 2; ++s)
       if (side(s).has_many())
-        most = std::min<std::uint64_t>(most, side(s).bounds() == BoundMethod::table ? 60 : 300);
+        most = std::min<std::uint64_t>(most, side(s).bounds() == BoundMethod::table ? 15 : 300);
     return {.max_splits = most};
   }
 
