@@ -16,17 +16,12 @@ Queries::Queries(const LimitSurface& a, const LimitSurface& b, const SurfaceBvhO
     : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
 
 Collision Queries::collide(const PosePair& at, double tolerance, double margin, WitnessKind witness) {
-  CollideOptions options{.tolerance = 0, .prove_contact = false, .measure = false};
-  options.tolerance = tolerance;
-  options.margin = margin;
-  options.witness = witness;
+  const CollideOptions options{.tolerance = tolerance, .margin = margin, .witness = witness};
   return snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
 }
 
 std::optional<bool> Queries::meet(const PosePair& at) {
-  CollideOptions options{.tolerance = 0, .prove_contact = false, .measure = false};
-  options.tolerance = 1e-7;
-  options.prove_contact = true;
+  const CollideOptions options{.tolerance = 1e-7, .prove_contact = true};
   switch (snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options).verdict) {
     case Verdict::separated:
       return false;

@@ -24,6 +24,7 @@ class Queries {
   /// Models and scratch, without the surfaces.
   [[nodiscard]] std::size_t bytes() const;
   /// Scratch alone.
+  void forget() { scratch_a_.renew(a_), scratch_b_.renew(b_); }
   [[nodiscard]] std::size_t scratch_bytes() const { return scratch_a_.bytes() + scratch_b_.bytes(); }
 
  private:

@@ -303,6 +303,8 @@ val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
     how.tolerance = option<double>(options, "tolerance");
     how.margin = option<double>(options, "margin").value_or(0);
     how.solid = option<bool>(options, "solid").value_or(false);
+    how.measure = option<bool>(options, "measure").value_or(false);
+    how.prove_contact = option<bool>(options, "proveContact").value_or(false);
     Proof proof(options);
     const Collision answer = collide(a, b, how, proof.with(run_of(options)));
     val result = val::object();

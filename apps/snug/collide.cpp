@@ -102,6 +102,9 @@ std::string row(const Collision& answer) {
   return text;
 }
 
+// The command is asked once, and says all that can be shown.
+constexpr CollideOptions thorough{.prove_contact = true, .measure = true};
+
 ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report,
                      const CollideOptions& wanted, const WorkMonitor& monitor) {
   const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
@@ -164,7 +167,7 @@ ExitStatus run_scene(const Options& options) {
   question.all_pairs = options.all_pairs;
   question.header = "verdict lower upper ax ay az bx by bz";
   question.ask = [&](const ScenePair& pair, Workspace& workspace, SceneAnswer& answer, JsonWriter* json) {
-    CollideOptions wanted;
+    CollideOptions wanted = thorough;
     wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
     wanted.solid = options.solid;
     const Collision found = collide(run.scene(), pair, wanted, run_of(options, quiet, &workspace));
@@ -199,7 +202,7 @@ ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   const Length margin = parse_length(options.margin, "--margin", true);
   PairArguments pair(options);
-  CollideOptions wanted;
+  CollideOptions wanted = thorough;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
   wanted.margin = margin.in_mesh_units(pair.size());
   wanted.solid = options.solid;

@@ -18,8 +18,8 @@ void note_nesting(const CommonOptions& options, const PlacedSurface& a, const Pl
                   const WorkMonitor& monitor) {
   const Notes notes = notes_for(options);
   if (!notes || a.surface().open_reason() || b.surface().open_reason()) return;
-  const Collision found =
-      collide(a, b, {.witness = WitnessKind::none, .solid = true, .measure = false}, {.monitor = &monitor});
+  const Collision found = collide(a, b, {.witness = WitnessKind::none, .prove_contact = true, .solid = true},
+                                  {.monitor = &monitor});
   if (found.contained) {
     notes(inner_sentence(*found.contained).append(", but the surfaces do not meet; --solid compares solids"));
   }

@@ -50,15 +50,16 @@ Answers<T> for_poses(const PySurface& py_a, const PySurface& py_b, const Poses& 
 Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
                                     const py::object& pose_b, const py::object& tolerance,
                                     const py::object& margin, bool solid, const py::object& witness,
-                                    bool measure, const py::object& max_splits, const py::object& threads,
-                                    const py::object& progress, const py::object& rigid,
-                                    const py::object& certificate) {
+                                    bool measure, bool prove_contact, const py::object& max_splits,
+                                    const py::object& threads, const py::object& progress,
+                                    const py::object& rigid, const py::object& certificate) {
   CertificateFile file(certificate);
   CollideOptions options;
   if (!tolerance.is_none()) options.tolerance = length_of(tolerance, larger_size(a, b), "tolerance");
   if (!margin.is_none()) options.margin = *length_of(margin, larger_size(a, b), "margin");
   options.solid = solid;
   options.measure = measure;
+  options.prove_contact = prove_contact;
   if (!witness.is_none()) {
     options.witness = named<WitnessKind>(witness,
                                          {{"none", WitnessKind::none},
@@ -373,13 +374,16 @@ void add_pair_queries(py::module_& module) {
   module.def(
       "collide", collide_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
       arg("pose_b") = none, arg("tolerance") = "0.1%", arg("margin") = 0, arg("solid") = false,
-      arg("witness") = "exact", arg("measure") = true, arg("max_splits") = none, arg("threads") = 0,
-      arg("progress") = none, arg("rigid") = none, arg("certificate") = none,
+      arg("witness") = "exact", arg("measure") = false, arg("prove_contact") = false,
+      arg("max_splits") = none, arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+      arg("certificate") = none,
       ("Do two limit surfaces touch?\n\n" + poses +
        "tolerance, margin: mesh units, or percent of the larger surface's size as in \"0.1%\"; with "
        "tolerance 0 only proofs\n"
        "of contact or separation count. solid: compare the solids that closed surfaces bound.\n"
-       "witness: 'none', 'approximate' or 'exact'. measure: narrow the interval of separated surfaces.\n"
+       "witness: 'none', 'approximate' or 'exact'. measure: narrow the interval of separated surfaces, some "
+       "ten\n"
+       "microseconds more. prove_contact: before 'within' try to prove 'intersecting', some thirty more.\n"
        "max_splits: most splits. threads: for many poses; 0 takes all cores.\n"
        "certificate: a file for a proof of the answers, which snug-check verifies.\n\n"
        "Guarantee: 'separated' means distance > margin, 'within' distance <= margin + tolerance, "

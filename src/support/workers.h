@@ -16,8 +16,9 @@ template <class State>
 class Workers {
  public:
   /// `threads`: 0 for all cores.
-  Workers(State& own, int threads)
-      : own_(own), others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
+  Workers(State& own, int threads) : own_(own), others_(made_) { make(threads); }
+  /// The other threads' states are `kept` for the next time.
+  Workers(State& own, int threads, std::vector<State>& kept) : own_(own), others_(kept) { make(threads); }
 
   /// Calls work(state) on all threads, each with its own.
   /// Errors:    what `work` throws is thrown again once all have ended, of several one.
@@ -33,9 +34,13 @@ class Workers {
       }
     });
   }
-  [[nodiscard]] std::size_t threads() const { return others_.size() + 1; }
+  [[nodiscard]] std::size_t threads() const { return threads_; }
 
  private:
+  void make(int threads) {
+    threads_ = static_cast<std::size_t>(threads > 0 ? threads : hardware_threads());
+    if (others_.size() + 1 < threads_) others_.resize(threads_ - 1);
+  }
   void share(std::size_t count, const std::function<void(SharedRanges&, State&)>& work) {
     const std::thread::id caller = std::this_thread::get_id();
     std::atomic<std::size_t> taken{0};
@@ -46,7 +51,9 @@ class Workers {
   }
 
   State& own_;
-  std::vector<State> others_;
+  std::vector<State> made_;
+  std::vector<State>& others_;
+  std::size_t threads_ = 1;
 };
 
 }  // namespace snug

@@ -77,14 +77,15 @@ void walk(const WideBvh& tree, const std::vector<Point3>& points, std::uint32_t 
   }
 }
 
-void expect_every_item_once(const WideBvh& tree, const std::vector<Point3>& points) {
+void expect_every_item_once(const WideBvh& tree, const std::vector<Point3>& points,
+                            std::size_t most_deep = 4) {
   std::vector<std::uint32_t> below;
   std::size_t deepest = 0;
   walk(tree, points, tree.root().names[0], 0, below, deepest);
   std::sort(below.begin(), below.end());
   ASSERT_EQ(below.size(), points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) EXPECT_EQ(below[i], i);
-  EXPECT_LE(deepest, 4u);
+  EXPECT_LE(deepest, most_deep);
   for (const Point3& p : points) {
     EXPECT_LE(distance(p, tree.ball().centre), tree.ball().radius);
     WideNode::Distances found;
@@ -111,6 +112,84 @@ TEST(bounding_tree, holds_every_item_once_below_boxes_that_contain_it) {
     expect_every_item_once(tree_of(far), far);
     expect_every_item_once(lazy_tree_of(far, 1), far);
   }
+}
+
+// A quadratic triangle of any shape, and points within its error of it.
+struct AnySet {
+  FittedSet set;
+  std::vector<Point3> points;
+
+  AnySet(const Point3& centre, double size, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    const auto vector = [&](double length) {
+      return length * Vector3{normal(random), normal(random), normal(random)};
+    };
+    const double bend = std::array{0.0, 0.01, 1.0}[random() % 3] * size;
+    set.error = random() % 5 == 0 ? INFINITY : std::array{0.0, 1e-3, 0.3}[random() % 3] * size;
+    for (std::size_t k = 0; k < 3; ++k) set.net[k] = centre + vector(size);
+    for (std::size_t k = 0; k < 3; ++k)
+      set.net[3 + k] = set.net[k] + 0.5 * (set.net[(k + 1) % 3] - set.net[k]) + vector(bend);
+    const double off = set.error < INFINITY ? set.error : 0;
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 12; ++i) {
+      double u = unit(random), v = unit(random);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (i < 3) u = i == 1, v = i == 2;
+      const double r = 1 - u - v;
+      Vector3 p;
+      const std::array weights{r * r, u * u, v * v, 2 * r * u, 2 * u * v, 2 * r * v};
+      for (std::size_t k = 0; k < 6; ++k) p = p + weights[k] * (set.net[k] - centre);
+      const Vector3 away = vector(1);
+      points.push_back(centre + p + off * (1 - 1e-9) / length(away) * away);
+    }
+    // A box that holds these points, and perhaps all of the net.
+    std::vector<Point3> held = points;
+    if (random() % 2 == 0) held.insert(held.end(), set.net.begin(), set.net.end());
+    set.box = fit_box(principal_axes(held), [&](const Vector3& d) {
+      Extent extent;
+      for (const Point3& p : held) extent.add({dot(d, p - Point3{}) - 1e-14, dot(d, p - Point3{}) + 1e-14});
+      return extent;
+    });
+  }
+};
+
+TEST(bounding_tree, of_sets_holds_every_set_once_below_boxes_that_contain_it) {
+  std::mt19937_64 random(8);
+  for (const std::size_t count : {1u, 7u, 8u, 9u, 64u, 65u, 513u, 3000u}) {
+    const std::vector<Point3> centres = scattered(count);
+    std::vector<FittedSet> sets;
+    std::vector<std::vector<Point3>> points(12);
+    for (const Point3& centre : centres) {
+      const AnySet made(centre, 0.03, random);
+      sets.push_back(made.set);
+      for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(made.points[i]);
+    }
+    const WideBvh tree(sets);
+    for (const std::vector<Point3>& some : points) expect_every_item_once(tree, some, 8);
+  }
+}
+
+// Sets that are ever smaller: the worst there is for a tree that is split by surface.
+TEST(bounding_tree, of_sets_is_not_deep) {
+  std::mt19937_64 random(9);
+  std::vector<FittedSet> sets;
+  std::vector<Point3> points;
+  for (int i = 0; i < 2000; ++i) {
+    const double size = std::pow(0.98, i);
+    const AnySet made({size, 0, 0}, 0.1 * size, random);
+    sets.push_back(made.set);
+    points.push_back(made.points[0]);
+  }
+  expect_every_item_once(WideBvh(sets), points, 12);
+  // Nothing is apart from a set without end, and all others have their boxes.
+  sets[5].box.half = {INFINITY, INFINITY, INFINITY};
+  sets[5].error = INFINITY;
+  const WideBvh tree(sets);
+  EXPECT_EQ(tree.box().half.x, INFINITY);
+  std::vector<std::uint32_t> below;
+  std::size_t deepest = 0;
+  walk(tree, points, tree.root().names[0], 0, below, deepest);
+  EXPECT_EQ(below.size(), points.size());
 }
 
 TEST(bounding_tree, narrowed_to_a_hull_holds_every_item_and_no_more_than_the_hull) {

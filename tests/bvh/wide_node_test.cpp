@@ -214,6 +214,40 @@ TEST(wide_node, distances_to_a_box_of_another_never_exceed_those_of_the_contents
   EXPECT_LE(line_alone, total / 1000);
 }
 
+// What a walk passes over is as far away as it says; and it passes over most of what gaps in double precision do.
+TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
+  std::mt19937_64 random(32);
+  std::size_t passed = 0, by_gaps = 0, total = 0;
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(4000)); ++trial) {
+    const TwoNodes two(random);
+    if (!two.view.frame.comparable) continue;
+    const TreeView view(two.view);
+    const auto in_a = two.images(0), in_b = two.images(1);
+    for (std::size_t j = 0; j < in_b.size(); ++j) {
+      const kernels::Deepest near = two.nodes[0].near_boxes(two.nodes[1], j, view, two.prune_distance);
+      WideNode::Distances gaps;
+      const WideNode::Near exact =
+          two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, WideNode::Gaps::axes, gaps);
+      ASSERT_LT(near.places, 1u << in_a.size());
+      if (near.places != 0) {
+        ASSERT_TRUE((near.places >> near.deepest & 1u) != 0);
+      }
+      for (std::size_t i = 0; i < in_a.size(); ++i) {
+        ++total;
+        by_gaps += (exact.places >> i & 1u) == 0;
+        if ((near.places >> i & 1u) != 0) continue;
+        ++passed;
+        const long double apart = distance_from_above(in_a[i], in_b[j], random) + two.rounding();
+        ASSERT_LT(static_cast<double>(two.prune_distance) * two.view.frame.to_world, apart) << trial;
+        ASSERT_LE(static_cast<double>(near.others) * two.view.frame.to_world, apart) << trial;
+      }
+    }
+  }
+  std::printf("  of %zu pairs %zu passed over, %zu by gaps\n", total, passed, by_gaps);
+  EXPECT_GT(passed, total / 12);
+  EXPECT_GT(passed, by_gaps / 2);
+}
+
 // Placed in double precision, or in single as a part of its node.
 TEST(wide_node, distances_to_a_placed_box_never_exceed_those_of_the_contents) {
   std::mt19937_64 random(23);
@@ -290,6 +324,10 @@ TEST(wide_node, distances_are_the_same_on_every_instruction_set) {
         for (const WideNode::Gaps which : both_gaps) {
           add(two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, which, one));
         }
+        const kernels::Deepest near =
+            two.nodes[0].near_boxes(two.nodes[1], j, TreeView(two.view), two.prune_distance);
+        all.insert(all.end(),
+                   {static_cast<float>(near.places), static_cast<float>(near.deepest), near.others});
       }
       add(two.nodes[0].distances(seen, two.view.frame.slack, two.prune_distance, one));
       two.nodes[0].distances(two.clouds[0][0][0] + Vector3{0.1, 0.2, 0.3}, 0, one);

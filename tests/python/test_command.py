@@ -50,13 +50,13 @@ def test_pairs(names):
     a, b = map(snug.read, files)
     for pose in POSES:
         document = output_of("collide", *files, "--place-b", text(pose))
-        answer = snug.collide(a, b, pose_b=pose)
+        answer = snug.collide(a, b, pose_b=pose, measure=True, prove_contact=True)
         assert document["verdict"] == answer.verdict
         same_pair(document, answer)
         document, answer = output_of("distance", *files, "--place-b", text(pose)), snug.distance(a, b, pose_b=pose)
         assert document["outcome"] == answer.outcome
         same_pair(document, answer)
-    many = snug.collide(a, b, pose_b=POSES)
+    many = snug.collide(a, b, pose_b=POSES, measure=True, prove_contact=True)
     for i, pose in enumerate(POSES):
         assert output_of("collide", *files, "--place-b", text(pose))["distance"][0] == many.lower[i]
 
@@ -65,7 +65,7 @@ def test_solids_and_options():
     files = MODELS / "bracket.obj", MODELS / "pin.obj"
     a, b = map(snug.read, files)
     document = output_of("collide", *files, "--place-b", text(moved(0, 0, 0.5)), "--solid", "--margin", "1%", "--tolerance", "0.01")
-    same_pair(document, snug.collide(a, b, pose_b=moved(0, 0, 0.5), solid=True, margin="1%", tolerance=0.01))
+    same_pair(document, snug.collide(a, b, pose_b=moved(0, 0, 0.5), solid=True, margin="1%", tolerance=0.01, measure=True, prove_contact=True))
     document = output_of("distance", *files, "--absolute", "0", "--relative", "1e-6")
     same_pair(document, snug.distance(a, b, relative=1e-6))
 

@@ -8,11 +8,15 @@ from conftest import CUBE, CUBE_FACES, moved, turned
 
 
 def test_a_verdict_is_a_truth(bracket, pin):
-    hit = snug.collide(bracket, pin)
+    plain = snug.collide(bracket, pin)
+    assert plain.verdict == "separated" and 0 < plain.lower
+    hit = snug.collide(bracket, pin, measure=True)
+    assert plain.lower <= hit.lower and hit.lower >= hit.upper / 2
     assert hit.verdict == "separated" and not hit and hit.separated and not hit.colliding
     assert 0 < hit.lower <= hit.upper and hit.points.shape == (2, 3) and hit.stats["box_tests"] > 0
     assert repr(hit).startswith("<snug.Collision separated, distance 0.012")
-    touch = snug.collide(bracket, pin, pose_b=moved(0, 0, 0.5))
+    assert snug.collide(bracket, pin, pose_b=moved(0, 0, 0.5)).colliding
+    touch = snug.collide(bracket, pin, pose_b=moved(0, 0, 0.5), prove_contact=True)
     assert touch and touch.verdict == "intersecting" and touch.upper == 0
     undecided = snug.collide(bracket, pin, tolerance=0, max_splits=0)
     assert undecided.undecided and undecided.lower <= hit.upper

@@ -38,7 +38,7 @@ TEST(placed_trees, crossings_are_proved_for_all_places_within_the_deviation) {
     const bool on_a = random() % 2 != 0;
     const PlacedBvh placed_a{model_a, scratch_a, pose_a, on_a ? deviation : 0},
         placed_b{model_b, scratch_b, pose_b, on_a ? 0 : deviation};
-    const CollideOptions options{.tolerance = 0, .solid = trial % 2 != 0, .measure = false};
+    const CollideOptions options{.tolerance = 0, .prove_contact = true, .solid = trial % 2 != 0};
     const snug::Run run{.max_splits = 20'000};
     const Verdict verdict = collide(placed_a, placed_b, options, run).verdict;
     // Moved out by more than its depth, it is apart.
@@ -51,41 +51,6 @@ TEST(placed_trees, crossings_are_proved_for_all_places_within_the_deviation) {
         << trial;
   }
   EXPECT_GT(proved, 10);
-}
-
-TEST(pair_workspaces, are_asked_once_each_and_never_by_two_threads_in_one_scratch) {
-  const Surface a = testing::public_surface(oracle::meshes::icosahedron());
-  PairWorkspaces scratches(a.data()->bvh(), a.data()->bvh(), 4);
-  std::vector<std::atomic<int>> asked(1000);
-  std::mutex guard;
-  std::set<const SurfaceWorkspace*> busy;
-  scratches.for_each(asked.size(),
-                     [&](SurfaceWorkspace& x, SurfaceWorkspace&, std::size_t i) {
-                       {
-                         const std::lock_guard lock(guard);
-                         EXPECT_TRUE(busy.insert(&x).second);
-                       }
-                       ++asked[i];
-                       std::this_thread::sleep_for(std::chrono::microseconds(100));  // lets the others in
-                       const std::lock_guard lock(guard);
-                       busy.erase(&x);
-                     },
-                     {});
-  for (const auto& count : asked) ASSERT_EQ(count, 1);
-}
-
-TEST(pair_workspaces, are_left_at_an_error) {
-  const Surface a = testing::public_surface(oracle::meshes::icosahedron());
-  PairWorkspaces scratches(a.data()->bvh(), a.data()->bvh(), 3);
-  std::atomic<int> asked{0};
-  EXPECT_THROW(scratches.for_each(1'000'000,
-                                  [&](SurfaceWorkspace&, SurfaceWorkspace&, std::size_t i) {
-                                    ++asked;
-                                    if (i == 1000) throw InputError(InputProblem::value, "here");
-                                  },
-                                  {}),
-               InputError);
-  EXPECT_LT(asked, 1'000'000);
 }
 
 }  // namespace

@@ -526,7 +526,7 @@ TEST(time_of_contact, of_every_scheme_is_not_later_than_collisions_at_samples) {
     const TimeOfContact found = time_of_contact(surface, Motion(), surface, motion);
     for (int i = 0; i <= 60; ++i) {
       const double t = i / 60.0;
-      const Collision at = collide(surface, surface.at(motion.at(t)), {.tolerance = 0, .measure = false},
+      const Collision at = collide(surface, surface.at(motion.at(t)), {.tolerance = 0, .prove_contact = true},
                                    {.max_splits = 20'000});
       if (at.verdict != Verdict::intersecting) continue;
       ++met;

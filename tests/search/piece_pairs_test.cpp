@@ -33,59 +33,6 @@ bool has_patches(const LimitSurface& surface) {
   return any;
 }
 
-// Limit points higher than a plane are on pieces that were found beyond it, whole patches and parts of them.
-TEST(piece_pairs, what_is_beyond_no_plane_is_below_it) {
-  std::size_t points = 0, above = 0, parts = 0, too_many = 0;
-  testing::for_each_disguised_surface(
-      41, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64& random) {
-        if (random() % 8 != 0 || !has_patches(surface)) return;
-        const double far = surface.scale().inverse().apply(random() % 2 == 0 ? 0.5 : 100.0);
-        Placed at(surface, testing::random_placement(random, testing::random_vector(random, far)));
-        const PlacedFrame& frame = at.frames.frame(0);
-        const Vector3 w = normalized(testing::random_vector(random, 1));
-        const auto placed_height = [&](const Point3& p) { return dot(w, frame.apply(p) - Point3{}); };
-        struct Sample {
-          double height;
-          std::size_t patch;
-        };
-        std::vector<Sample> samples;
-        testing::for_each_patch(surface, [&](PatchId p) {
-          const Patch patch = surface.patch(p);
-          for (int i = 0; i < 8; ++i) {
-            const RelativePoint point = limit_point(patch, testing::random_parameter(random));
-            samples.push_back({placed_height(patch.origin + point.relative), p.value()});
-          }
-        });
-        std::sort(samples.begin(), samples.end(), [](auto& x, auto& y) { return x.height < y.height; });
-        for (const double error : {10.0, 0.001}) {
-          const double height = samples[samples.size() * (1 + random() % 10) / 11].height;
-          std::vector<Node> found;
-          const bool all = at.pieces.beyond(0, w, height, error, 64, 1000, found);
-          EXPECT_LE(found.size(), 64u);
-          if (!all) {
-            ++too_many;
-            continue;
-          }
-          std::set<std::size_t> roots;
-          for (const Node& node : found) {
-            roots.insert(at.workspace.root_of(node).value());
-            parts += node.kind == Node::Kind::piece;
-          }
-          // Samples are rounded, too.
-          const double doubt = 1e-12 + 64 * unit_roundoff * max_abs(frame.translation);
-          for (const Sample& sample : samples) {
-            ++points;
-            if (!(sample.height > height + doubt)) continue;
-            ++above;
-            EXPECT_TRUE(roots.contains(sample.patch)) << name << ", " << sample.height - height;
-          }
-        }
-      });
-  EXPECT_GT(above, points / 20);
-  EXPECT_GT(parts, testing::fewer(500));
-  EXPECT_GT(too_many, testing::fewer(5));
-}
-
 // A patch or a piece some levels down.
 Node some_node(SurfaceWorkspace& workspace, std::mt19937_64& random) {
   Node node = workspace.root();

@@ -64,6 +64,10 @@ export interface CollideOptions extends PairOptions {
   tolerance?: number;
   /** Required clearance, 0 by default. */
   margin?: number;
+  /** Narrow the interval of separated surfaces, and give witnesses: about ten microseconds more. */
+  measure?: boolean;
+  /** Before "within", try to prove "intersecting": some tens of microseconds for a contact. */
+  proveContact?: boolean;
 }
 export interface DistanceOptions extends PairOptions {
   /** Largest width of the interval. Default: 0.01 % of the larger size. */

@@ -70,7 +70,7 @@ const operations = {
   },
   ask({ a, b, poseA, poseB, tolerance, solid }) {
     const start = performance.now();
-    const collision = snug.collide(parts.get(a), parts.get(b), { poseA, poseB, tolerance, solid });
+    const collision = snug.collide(parts.get(a), parts.get(b), { poseA, poseB, tolerance, solid, measure: true, proveContact: true });
     const distance = snug.distance(parts.get(a), parts.get(b), { poseA, poseB, absolute: tolerance, solid });
     const milliseconds = performance.now() - start;
     return {
@@ -85,7 +85,7 @@ const operations = {
     const [one, other] = [parts.get(a), parts.get(b)];
     const how = { poseA, poseB, solid, certificate: true };
     return apart ? snug.distance(one, other, { ...how, absolute: tolerance }).certificate
-                 : snug.collide(one, other, { ...how, tolerance }).certificate;
+                 : snug.collide(one, other, { ...how, tolerance, measure: true, proveContact: true }).certificate;
   },
   shape: ({ part, ...how }) => shapeOf(parts.get(part), how),
   enclosures: ({ part, level }) => parts.get(part).enclosureShapes({ level }),

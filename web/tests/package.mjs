@@ -42,7 +42,7 @@ test("says that the pin is clear of the bracket, and by how much", () => {
   assert.equal(snug.textAtMost(1 / 3), "0.333333");
   assert.equal(snug.textAtLeast(2 / 3), "0.666667");
   const inner = snug.pose({ degrees: -45, move: [1.06, 1.06, 0.5] });
-  assert.equal(snug.collide(bracket, pin, { poseB: inner }).verdict, "intersecting");
+  assert.equal(snug.collide(bracket, pin, { poseB: inner, proveContact: true }).verdict, "intersecting");
 });
 
 // Poses far and near, turned by any angle and by right ones, in steps where parts of one lattice have many equal distances.
@@ -88,7 +88,7 @@ test("gives the bits of the native library to 1120 questions", () => {
       const document = ask(question, join(models, name_a), join(models, name_b), "--poses", file, ...(scheme ? ["--scheme", scheme] : []));
       assert.equal(document.results.length, list.length);
       document.results.forEach((native, i) => {
-        const own = question === "collide" ? snug.collide(a, b, { poseB: list[i], tolerance: document.tolerance })
+        const own = question === "collide" ? snug.collide(a, b, { poseB: list[i], tolerance: document.tolerance, measure: true, proveContact: true })
           : snug.distance(a, b, { poseB: list[i], absolute: document.absolute });
         // Strict equality tells 0 from -0, and any two doubles.
         assert.deepStrictEqual(own_bits(own), native_bits(native), `${question} ${name_a} ${name_b} ${scheme ?? ""}, pose ${i}`);

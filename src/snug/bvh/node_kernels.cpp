@@ -3,6 +3,7 @@
 #include <snug/geometry/vector_code-inl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <snug/bvh/node_kernels.h>
@@ -253,6 +254,63 @@ Near seen_along(const float* node, float reach, const SeenBox& other, const Turn
   return near;
 }
 
+Deepest walk_step(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,
+                  const TreeView& view, float prune_distance) {
+  const float* const column = other.rows + place;
+  const float from[3] = {static_cast<float>(node.origin[0]), static_cast<float>(node.origin[1]),
+                         static_cast<float>(node.origin[2])};
+  const float to[3] = {static_cast<float>(other.origin[0]), static_cast<float>(other.origin[1]),
+                       static_cast<float>(other.origin[2])};
+  // The box of the other node, less this one's origin.
+  const hn::CappedTag<float, 4> d4;
+  HWY_ALIGN float placed[4][4];
+  for (std::size_t at = 0; at < 4; at += hn::Lanes(d4)) {
+    const auto turned = [&](float x, float y, float z) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Mul(hn::Load(d4, view.columns[0] + at), hn::Set(d4, x)),
+                             hn::Mul(hn::Load(d4, view.columns[1] + at), hn::Set(d4, y))),
+                     hn::Mul(hn::Load(d4, view.columns[2] + at), hn::Set(d4, z)));
+    };
+    hn::Store(hn::Add(turned(column[0] + to[0], column[8] + to[1], column[16] + to[2]),
+                      hn::Load(d4, view.translation + at)),
+              d4, placed[3] + at);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float* const axis = column + 8 * (6 + 3 * k);
+      hn::Store(hn::Mul(turned(axis[0], axis[8], axis[16]), hn::Set(d4, view.inverse_scale)), d4,
+                placed[k] + at);
+    }
+  }
+  OtherBox box;
+  float own = node.reach, others = other.reach;
+  for (std::size_t k = 0; k < 3; ++k) {
+    own += std::fabs(from[k]);
+    others += std::fabs(to[k]);
+    box.centre[k] = placed[3][k] - from[k];
+    box.half[k] = view.scale * column[8 * (3 + k)];
+    for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = placed[k][i];
+  }
+  const float size = own + 2 * view.scale * others + view.reach;
+  // What is not a number is near.
+  if (!(size < 1e18F)) return {(1u << count) - 1, 0, INFINITY};
+  const float doubt = walk_roundings * size + view.slack, limit = prune_distance + doubt;
+  const Tag d;
+  const auto row = [&](std::size_t r) {
+    return hn::Set(d, r < 3 ? box.centre[r] : r < 6 ? box.half[r - 3] : box.axes[(r - 6) / 3][r % 3]);
+  };
+  HWY_ALIGN float found[8];
+  Near near{0, INFINITY};
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    store(gaps<false>(node.rows, at, row, hn::Zero(d), limit), limit, at, found, near);
+  }
+  const std::uint32_t places = near.places & ((1u << count) - 1);
+  Deepest result{places, 0, near.others - doubt};
+  float least = INFINITY;
+  for (std::uint32_t rest = places; rest != 0; rest &= rest - 1) {
+    const auto p = static_cast<std::uint32_t>(std::countr_zero(rest));
+    if (found[p] < least) least = found[p], result.deepest = p;
+  }
+  return result;
+}
+
 void boxes_to_point(const float* node, const float* point, float slack, float* out) {
   const Tag d;
   const std::size_t n = hn::Lanes(d);
@@ -302,6 +360,7 @@ HWY_EXPORT(boxes);
 HWY_EXPORT(seen_box);
 HWY_EXPORT(seen_along);
 HWY_EXPORT(boxes_to_point);
+HWY_EXPORT(walk_step);
 HWY_EXPORT(extents);
 
 Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
@@ -325,6 +384,11 @@ Near obb_distances(const float* node, float reach, const SeenBox& other, const T
 
 void obb_distances(const float* node, const float point[3], float slack, float* out) {
   HWY_DYNAMIC_DISPATCH(boxes_to_point)(node, point, slack, out);
+}
+
+Deepest near_boxes(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,
+                   const TreeView& view, float prune_distance) {
+  return HWY_DYNAMIC_DISPATCH(walk_step)(node, count, other, place, view, prune_distance);
 }
 
 void obb_extents(const float* node, float reach, const float direction[3], float* out) {

@@ -49,6 +49,31 @@ struct SeenBox {
   float reach;        ///< of the other node
   float offset[3];    ///< of the other node's origin from this one's, here
 };
+/// How another tree is seen: x -> columns x + translation, in single precision; lengths become `scale` times as large.
+struct TreeView {
+  alignas(16) float columns[3][4];
+  alignas(16) float translation[4];
+  float scale, inverse_scale;
+  float slack;  ///< taken off from gaps, besides what roundings do to them
+  float reach;  ///< of the translation: the sum of its sizes
+};
+/// A node: its boxes' rows, and the origin they are relative to.
+struct NodeRows {
+  const float* rows;
+  float reach;  ///< as in obb_distances()
+  double origin[3];
+};
+/// What roundings of a walk do to a gap, at most, as a part of all that is involved.
+inline constexpr float walk_roundings = 80 * 0x1p-24F;
+/// The boxes that may be within a distance, a bit each; the one that overlaps most deeply; the least gap of the others.
+struct Deepest {
+  std::uint32_t places, deepest;
+  float others;
+};
+/// The boxes of `node` against the box at a place of `other`, all placed in single precision: quicker than obb_distances(), and
+/// less exact by some 2^-15 of the trees' sizes.
+Deepest near_boxes(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,
+                   const TreeView& view, float prune_distance);
 /// Which gaps are looked for: across fifteen axes, or along the line of the centres and Turn::direction,
 /// which are sharper for boxes that are far apart.
 enum class Gaps : std::uint8_t { axes, lines };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
@@ -217,7 +218,7 @@ Axes orthonormal_axes(const Vector3& a, const Vector3& b) {
   return {first, second, cross(first, second)};
 }
 
-Obb merge(std::span<const Obb> boxes) {
+Axes axes_around(std::span<const Obb> boxes) {
   SNUG_EXPECT(!boxes.empty());
   Vector3 sum;
   for (const Obb& box : boxes) sum = sum + (box.centre - Point3{});
@@ -229,7 +230,48 @@ Obb merge(std::span<const Obb> boxes) {
       add_outer(covariance, box.axes[k], box.half[k] * box.half[k] / 3);
     }
   }
-  return merge(boxes, turned_to_fit(axes_of(covariance), boxes));
+  return axes_of(covariance);
+}
+
+Obb merge(std::span<const Obb> boxes) { return merge(boxes, turned_to_fit(axes_around(boxes), boxes)); }
+
+Extent extent_of(const FittedSet& set, const Vector3& direction) {
+  const Extent of_box = extent_of(std::span(&set.box, 1), direction);
+  if (!(set.error < INFINITY) || !(of_box.upper < INFINITY)) return of_box;
+  // Bezier points of the quarters, those that are no means of others.
+  std::array<double, 6> h;
+  const Point3& from = set.net[0];
+  double largest = 0;
+  h[0] = 0;
+  for (std::size_t k = 1; k < 6; ++k) {
+    const Vector3 v = set.net[k] - from;
+    h[k] = dot(direction, v);
+    largest = std::max(largest, max_abs(v));
+  }
+  Extent of_net{std::min({h[0], h[1], h[2]}), std::max({h[0], h[1], h[2]})};
+  const double inner = h[3] + h[4] + h[5];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const double centre = (h[k] + inner) / 4;
+    of_net.add({std::min(centre, (std::min(h[k], h[next]) + h[3 + k]) / 2),
+                std::max(centre, (std::max(h[k], h[next]) + h[3 + k]) / 2)});
+  }
+  const double middle = dot(direction, from - Point3{});
+  const double reach =
+      enlarged(set.error + 64 * unit_roundoff * (largest + max_abs(from - Point3{}))) + 16 * underflow_error;
+  return {std::max(of_box.lower, middle + of_net.lower - reach),
+          std::min(of_box.upper, middle + of_net.upper + reach)};
+}
+
+Obb box_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which) {
+  thread_local std::vector<Obb> boxes;
+  boxes.clear();
+  for (const std::uint32_t i : which) boxes.push_back(sets[i].box);
+  return fit_box(turned_to_fit(axes_around(boxes), boxes), [&](const Vector3& axis) {
+    Extent all;
+    for (const std::uint32_t i : which) all.add(extent_of(sets[i], axis));
+    return all;
+  });
 }
 
 Obb merge(std::span<const Obb> boxes, const Axes& axes) {

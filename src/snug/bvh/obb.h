@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 #include <support/point.h>
@@ -50,10 +51,24 @@ template <class Extents>
   return box_of(axes, {extent(axes[0]), extent(axes[1]), extent(axes[2])});
 }
 
+/// Principal axes of one or more boxes.
+[[nodiscard]] Axes axes_around(std::span<const Obb> boxes);
 /// A box around one or more boxes.
 [[nodiscard]] Obb merge(std::span<const Obb> boxes);
 /// The same along given axes.
 [[nodiscard]] Obb merge(std::span<const Obb> boxes, const Axes& axes);
+
+/// A set that boxes are fitted to: in a box, and within `error` of a quadratic Bezier triangle.
+struct FittedSet {
+  Obb box;
+  std::array<Point3, 6> net{};  ///< corners, then middles of the edges 01, 12, 20
+  double error = INFINITY;      ///< infinite: nothing but the box is known
+};
+/// Bounds of dot(direction, x) over such a set, rounding included.
+/// Requires:  |direction| 1 up to a few roundings.
+[[nodiscard]] Extent extent_of(const FittedSet& set, const Vector3& direction);
+/// A box around one or more of these.
+[[nodiscard]] Obb box_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which);
 
 /// A ball around a box.
 struct Ball {

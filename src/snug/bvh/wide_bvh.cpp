@@ -137,6 +137,7 @@ WideBvh::WideBvh(std::size_t item_count) : items_(item_count) {
     const std::size_t leaves = leaves_of_level(whole().level);
     nodes += (leaf_count() + leaves - 1) / leaves;
   }
+  whole_ = name_of(whole());
   nodes_.resize(nodes);
   made_ = std::vector<std::atomic<bool>>(nodes);
 }
@@ -162,6 +163,131 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) :
   sort(whole(), items, threads);
   const Fitted fitted = fit_upwards(whole(), threads, fit);
   finish(merge(fitted.below), ball_around(fitted.leaves), fitted.leaves);
+}
+
+// Splits sets in two, again and again, after a multiple of the sets of a leaf.
+class WideBvh::Builder {
+ public:
+  Builder(std::span<const FittedSet> sets, std::span<std::uint32_t> items, std::vector<TreeNode>& nodes)
+      : sets_(sets), items_(items), nodes_(nodes), order_(items.size()), sides_(items.size()) {}
+
+  struct Range {
+    std::size_t begin, end;
+    Obb box;
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+    [[nodiscard]] double cost() const {
+      const Vector3& h = box.half;
+      return static_cast<double>(size()) * (h.x * h.y + h.y * h.z + h.z * h.x);
+    }
+  };
+  [[nodiscard]] Range range(std::size_t begin, std::size_t end) const {
+    return {begin, end, box_around(sets_, items_.subspan(begin, end - begin))};
+  }
+  // Makes what is below a box; the name of it.
+  std::uint32_t make(const Range& whole) {
+    if (whole.size() <= leaf_size) return static_cast<std::uint32_t>(whole.begin / leaf_size) | leaf_bit;
+    std::vector<Range> ranges{whole};
+    while (ranges.size() < WideNode::width) {
+      const auto costliest =
+          std::max_element(ranges.begin(), ranges.end(), [](const Range& x, const Range& y) {
+            return (x.size() > leaf_size ? x.cost() : -1) < (y.size() > leaf_size ? y.cost() : -1);
+          });
+      if (costliest->size() <= leaf_size) break;
+      const std::size_t middle = split(*costliest), end = costliest->end;
+      *costliest = range(costliest->begin, middle);
+      ranges.insert(std::next(costliest), range(middle, end));
+    }
+    const std::size_t name = nodes_.size();
+    nodes_.emplace_back();
+    std::vector<Obb> boxes;
+    std::vector<std::uint32_t> names;
+    for (const Range& part : ranges) {
+      boxes.push_back(part.box);
+      names.push_back(make(part));
+    }
+    nodes_[name] = TreeNode(boxes, names);
+    return static_cast<std::uint32_t>(name);
+  }
+
+ private:
+  // What a set takes of three axes, in single precision.
+  struct Sides {
+    std::array<float, 3> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+    void add(const Sides& other) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        lower[k] = std::min(lower[k], other.lower[k]);
+        upper[k] = std::max(upper[k], other.upper[k]);
+      }
+    }
+    [[nodiscard]] float surface() const {
+      const float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
+      return x * y + y * z + z * x;
+    }
+  };
+
+  // Across that axis of the box, and there, where number times surface is least.
+  std::size_t split(const Range& range) {
+    const std::size_t count = range.size();
+    const std::span<std::uint32_t> items = items_.subspan(range.begin, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Extent extent = extent_of(sets_[items[i]], range.box.axes[k]);
+        sides_[i].lower[k] = static_cast<float>(std::max(extent.lower, -1e6));
+        sides_[i].upper[k] = static_cast<float>(std::min(extent.upper, 1e6));
+      }
+    }
+    // An eighth at least on either side, so that trees are not deep.
+    const std::size_t least_part = count > 8 * leaf_size ? count / 8 : 0;
+    float least = INFINITY;
+    std::size_t best = (count / leaf_size + 1) / 2 * leaf_size, best_axis = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sort_along(k, count);
+      left_.clear();
+      Sides first, last;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (i > 0 && i % leaf_size == 0) left_.push_back(first.surface());
+        first.add(sides_[order_[i].second]);
+      }
+      for (std::size_t i = count - 1; i > 0; --i) {
+        last.add(sides_[order_[i].second]);
+        if (i % leaf_size != 0 || i < least_part || count - i < least_part) continue;
+        const float cost =
+            left_[i / leaf_size - 1] * static_cast<float>(i) + last.surface() * static_cast<float>(count - i);
+        if (!(cost < least)) continue;
+        least = cost;
+        best = i;
+        best_axis = k;
+      }
+    }
+    if (best_axis != 2) sort_along(best_axis, count);
+    for (std::size_t i = 0; i < count; ++i) order_[i].second = items[order_[i].second];
+    for (std::size_t i = 0; i < count; ++i) items[i] = order_[i].second;
+    return range.begin + best;
+  }
+  void sort_along(std::size_t axis, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      order_[i] = {sides_[i].lower[axis] + sides_[i].upper[axis], static_cast<std::uint32_t>(i)};
+    std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+
+  std::span<const FittedSet> sets_;
+  std::span<std::uint32_t> items_;
+  std::vector<TreeNode>& nodes_;
+  std::vector<std::pair<float, std::uint32_t>> order_;
+  std::vector<Sides> sides_;
+  std::vector<float> left_;
+};
+
+WideBvh::WideBvh(std::span<const FittedSet> sets) : WideBvh(sets.size()) {
+  nodes_.clear();
+  Builder builder(sets, items_, nodes_);
+  const Builder::Range whole = builder.range(0, sets.size());
+  whole_ = builder.make(whole);
+  made_ = std::vector<std::atomic<bool>>(nodes_.size());
+  for (auto& made : made_) made.store(true, std::memory_order_relaxed);
+  std::vector<Obb> leaves;
+  for (std::size_t i = 0; i < leaf_count(); ++i) leaves.push_back(box_around(sets, leaf(i)));
+  finish(whole.box, ball_around(leaves), leaves);
 }
 
 WideBvh::WideBvh(std::span<const Ball> balls, Fit fit, unsigned part_level) : WideBvh(balls.size()) {
@@ -270,10 +396,7 @@ void WideBvh::finish(const Obb& box, const Ball& ball, std::span<const Obb> part
   set_root();
 }
 
-void WideBvh::set_root() {
-  const std::uint32_t name = name_of(whole());
-  root_ = TreeNode(std::span(&box_, 1), std::span(&name, 1));
-}
+void WideBvh::set_root() { root_ = TreeNode(std::span(&box_, 1), std::span(&whole_, 1)); }
 
 void WideBvh::narrow(std::span<const Point3> hull) {
   dop_.narrow(hull);

@@ -46,6 +46,24 @@ void View::look_along(const Vector3& direction) {
   }
 }
 
+TreeView::TreeView(const View& view) {
+  const Vector3& t = view.frame.translation;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) columns[j][i] = view.turn.columns[j][i];
+    columns[i][3] = 0;
+    translation[i] = static_cast<float>(t[i]);
+  }
+  translation[3] = 0;
+  scale = view.turn.scale;
+  inverse_scale = view.turn.inverse_scale;
+  slack = view.slack;
+  reach = float_up(std::fabs(t.x) + std::fabs(t.y) + std::fabs(t.z));
+}
+
+float TreeView::doubt(float size) const {
+  return slack + kernels::walk_roundings * (size + 2 * scale * size + reach);
+}
+
 WideNode::WideNode(std::span<const Obb> boxes) {
   SNUG_EXPECT(!boxes.empty() && boxes.size() <= width);
   count_ = static_cast<std::uint32_t>(boxes.size());

@@ -22,6 +22,16 @@ struct View {
   void look_along(const Vector3& direction);
 };
 
+/// How a whole tree is seen, so that a walk places its nodes in single precision.
+/// Source:    derivations/boxes.md, "A walk in single precision".
+struct TreeView : kernels::TreeView {
+  TreeView() = default;
+  /// Requires:  view.frame.comparable.
+  explicit TreeView(const View& view);
+  /// About what gaps are lowered by, in units of the target, for trees of this size.
+  [[nodiscard]] float doubt(float size) const;
+};
+
 /// A box in the frame of the nodes that it is compared with.
 struct PlacedBox {
   Point3 centre;
@@ -61,6 +71,12 @@ class alignas(32) WideNode {
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
   Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance, Gaps which,
                  Distances& out) const;
+  /// Which boxes may be within `prune_distance` of one of another node's, all placed in single precision.
+  /// Guarantee: those of others are farther apart than that, as above, and than the result's `others`.
+  [[nodiscard]] kernels::Deepest near_boxes(const WideNode& other, std::size_t place, const TreeView& view,
+                                            float prune_distance) const {
+    return kernels::near_boxes(numbers(), count_, other.numbers(), place, view, prune_distance);
+  }
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
   /// The same to a point.
@@ -70,6 +86,10 @@ class alignas(32) WideNode {
   void extents(const Vector3& direction, Distances& out) const;
 
  private:
+  [[nodiscard]] kernels::NodeRows numbers() const {
+    return {rows_.data(), reach_, {origin_.x, origin_.y, origin_.z}};
+  }
+
   alignas(32) std::array<float, kernels::obb_rows * width> rows_{};
   std::array<float, width> sizes_{};
   Point3 origin_;

@@ -217,10 +217,9 @@ ClosestPoint closest_point(const Surface& surface, const Point3& to, const Preci
 std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const Point3> to,
                                         const Precision& options, const Run& run) {
   std::vector<ClosestPoint> results(to.size());
-  for_each_point(surface.data()->bvh(), to, run.threads, monitor_of(run),
-                 [&](SurfaceWorkspace& workspace, std::size_t i) {
-                   results[i] = closest_point(workspace, to[i], options, run);
-                 });
+  for_each_point(surface, to, run, [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = closest_point(workspace, to[i], options, run);
+  });
   certify(run, surface, to, results);
   return results;
 }
@@ -233,12 +232,11 @@ std::optional<bool> contains(const Surface& surface, const Point3& point, const 
 
 std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points,
                                           const Run& run) {
-  const SurfaceBvh& model = surface.data()->bvh();
-  static_cast<void>(model.solid());
+  static_cast<void>(surface.data()->bvh().solid());
   std::vector<std::optional<bool>> results(points.size());
-  for_each_point(
-      model, points, run.threads, monitor_of(run),
-      [&](SurfaceWorkspace& workspace, std::size_t i) { results[i] = contains(workspace, points[i], run); });
+  for_each_point(surface, points, run, [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = contains(workspace, points[i], run);
+  });
   certify(run, surface, points, results);
   return results;
 }
@@ -252,13 +250,11 @@ SignedDistance signed_distance(const Surface& surface, const Point3& point, cons
 
 std::vector<SignedDistance> signed_distance(const Surface& surface, std::span<const Point3> points,
                                             const Precision& options, const Run& run) {
-  const SurfaceBvh& model = surface.data()->bvh();
-  static_cast<void>(model.solid());
+  static_cast<void>(surface.data()->bvh().solid());
   std::vector<SignedDistance> results(points.size());
-  for_each_point(model, points, run.threads, monitor_of(run),
-                 [&](SurfaceWorkspace& workspace, std::size_t i) {
-                   results[i] = signed_distance(workspace, points[i], options, run);
-                 });
+  for_each_point(surface, points, run, [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = signed_distance(workspace, points[i], options, run);
+  });
   certify(run, surface, points, results);
   return results;
 }

@@ -9,6 +9,7 @@
 #include <snug/query/pair_queries.h>
 
 #include <snug/search/crossing.h>
+#include <snug/search/near_pairs.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
@@ -56,9 +57,11 @@ class CollideSearch {
     // Points so near cannot be found sooner than a crossing is proved.
     proving_ = options_.prove_contact ||
                reach_ <= 0x1p-14 * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1)));
-    stack.push_back(roots);
+    NearPairs near(frames_, stats_, margin_);
+    if (!near.usable()) stack.push_back(roots);
     while (!finished()) {
       std::optional<NodePair> pair;
+      if (NodePair next; stack.empty() && near.usable() && near.next(next)) stack.push_back(next);
       if (!stack.empty()) {
         pair = stack.back();
         stack.pop_back();
@@ -70,6 +73,11 @@ class CollideSearch {
         pair = nearest_of(waiting);
       }
       if (!open(*pair, stack)) break;
+    }
+    lower_ = std::min(lower_, std::max(0.0, near.others()));
+    // An attempt costs about what a split does.
+    if (found_ && !proving_ && stats_.splits > 0 && is_flat(*near_) && near_->near.certain_distance == 0) {
+      crossing_ = proves_crossing(frames_, *near_);
     }
     return result();
   }
@@ -127,9 +135,10 @@ class CollideSearch {
   }
 
   // To prove a crossing both pieces must be flat.
-  [[nodiscard]] bool worth_proving(const NodePair& pair, double radii) const {
-    return proving_ && attempts_ < max_attempts &&
-           radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
+  [[nodiscard]] bool is_flat(const PiecePair& pieces) const {
+    const NodePair pair{pieces.nodes, 0};
+    return pieces.radii[0] + pieces.radii[1] <=
+           static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
   }
 
   // Rules (a) and (b). False if the pair is done with.
@@ -152,7 +161,7 @@ class CollideSearch {
       }
       if (!found_ && !proving_ && pieces.gap <= reach_) find_common_point(pieces);
     }
-    if (worth_proving(pair, pieces.radii[0] + pieces.radii[1])) {
+    if (proving_ && attempts_ < max_attempts && is_flat(pieces)) {
       if (pieces.near.certain_distance == 0) {
         ++attempts_;
         crossing_ = proves_crossing(frames_, pieces);
@@ -245,12 +254,16 @@ void make_solid(const PlacedBvh& a, const PlacedBvh& b, const Run& run, Collisio
 
 Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
   Collision answer;
+  const bool verdict_alone = options.witness == WitnessKind::none && !options.measure;
   if (const double gap = root_gap(a, b, options.margin); gap > options.margin) {
     answer.verdict = Verdict::separated;
-    answer.distance.lower = gap;
+    answer.distance.lower = verdict_alone ? gap : std::max(gap, outer_gap(a, b));
     return answer;
   }
   answer = CollideSearch(a, b, options, run).run();
+  if (answer.verdict == Verdict::separated && !verdict_alone) {
+    answer.distance.lower = std::max(answer.distance.lower, std::min(outer_gap(a, b), answer.distance.upper));
+  }
   const bool proved = answer.verdict == Verdict::intersecting ||
                       (answer.verdict == Verdict::within && !options.prove_contact);
   if (options.solid && !proved) make_solid(a, b, run, answer);
@@ -306,8 +319,7 @@ Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideO
 
 std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const CollideOptions& options, const Run& run) {
-  const std::vector<Collision> answers =
-      PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(collide, poses, options, run);
+  const std::vector<Collision> answers = answers_to(collide, a, b, poses, options, run);
   certify(run, a, b, poses, options, answers);
   return answers;
 }

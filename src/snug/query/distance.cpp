@@ -3,14 +3,12 @@
 #include <vector>
 
 #include <snug/certificate/certify.h>
-#include <snug/geometry/rounding.h>
 #include <snug/query/nesting.h>
 #include <snug/query/pair_queries.h>
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
-#include <support/direction.h>
 #include <support/ordering.h>
 #include <support/run.h>
 
@@ -20,8 +18,6 @@ namespace {
 constexpr int max_crossing_attempts = 64;
 // Pairs that are followed down at the same time for a first upper bound.
 constexpr std::size_t beam = 4;
-// Pieces beyond a plane that are searched instead of whole surfaces.
-constexpr std::size_t max_beyond = 32;
 // Limit points are evaluated where they may be nearer by so much of the precision.
 constexpr double min_gain = 0.125;
 // Bounds of gaps err by some hundred roundings of what is about 4 large.
@@ -46,7 +42,7 @@ class DistanceSearch {
     dive();
     thread_local std::vector<NodePair> stack;
     stack.clear();
-    if (!cut_by_plane(stack)) stack.assign(1, walk_.roots());
+    stack.assign(1, walk_.roots());
     while (!stack.empty() && !bounds_.done()) {
       const NodePair pair = stack.back();
       stack.pop_back();
@@ -64,28 +60,6 @@ class DistanceSearch {
   }
 
  private:
-  // Two planes across the way between the witnesses, nearly as far apart as these. What lies beyond neither is
-  // farther apart than the planes are: pairs are left with a piece beyond one of them. False if these are many.
-  bool cut_by_plane(std::vector<NodePair>& stack) {
-    const Vector3 w = normalized(witness_.points[1] - witness_.points[0]);
-    const double room = 0.49 * bounds_.precision();
-    if (w == Vector3{} || !(bounds_.upper() > 4 * room)) return false;
-    const double height_a = dot(w, witness_.points[0] - Point3{}) + room,
-                 height_b = dot(w, witness_.points[1] - Point3{}) - room;
-    thread_local std::array<std::vector<Node>, 2> beyond;
-    for (std::vector<Node>& side : beyond) side.clear();
-    if (!pieces_.beyond(0, w, height_a, room / 4, max_beyond, max_splits_, beyond[0]) ||
-        !pieces_.beyond(1, -w, -height_b, room / 4, max_beyond, max_splits_, beyond[1])) {
-      return false;
-    }
-    const NodePair roots = walk_.roots();
-    for (const Node& node : beyond[0]) stack.push_back({{node, roots.nodes[1]}, roots.gap});
-    for (const Node& node : beyond[1]) stack.push_back({{roots.nodes[0], node}, roots.gap});
-    // |w| <= 1 + 5 u.
-    bounds_.prune(std::max(0.0, rounded_down((height_b - height_a) * (1 - 16 * unit_roundoff))));
-    return true;
-  }
-
   // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
   void dive() {
     thread_local std::vector<NodePair> front, next;
@@ -146,7 +120,7 @@ class DistanceSearch {
 
   // The upper bound, by limit points near each other or by a proof of contact.
   void improve(const NodePair& pair, PiecePair pieces) {
-    if (length(pieces.between) < bounds_.upper() + pieces.error) {
+    if (length(pieces.between) < bounds_.upper()) {
       pieces_.approach(pieces);
       const double gain = bounds_.upper() == INFINITY ? 0 : min_gain * bounds_.precision();
       if (length(pieces.between) < bounds_.upper() - gain) take(pieces_.witness(pieces));
@@ -223,8 +197,7 @@ Distance distance(const PlacedSurface& a, const PlacedSurface& b, const Distance
 
 std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const DistanceOptions& options, const Run& run) {
-  const std::vector<Distance> answers =
-      PairWorkspaces(a.data()->bvh(), b.data()->bvh(), run.threads).answers(distance, poses, options, run);
+  const std::vector<Distance> answers = answers_to(distance, a, b, poses, options, run);
   certify(run, a, b, poses, options, answers);
   return answers;
 }

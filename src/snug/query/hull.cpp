@@ -489,7 +489,8 @@ class Verification {
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
     const Collision found = collide(
-        a, b, {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .measure = false},
+        a, b,
+        {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .prove_contact = true},
         {.monitor = &monitor_, .max_splits = splits_beside + splits_a_triangle * largest_count_});
     if (found.verdict == Verdict::separated) return;
     std::optional<std::uint32_t> owner;

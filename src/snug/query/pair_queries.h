@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,9 +17,8 @@ namespace snug {
 [[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                                 const Run& run = {});
 
-/// Limit points where quadratics are nearest bound the distance from above; two planes across the direction of
-/// the nearest ones, and where pieces lie beyond these, pairs of nodes, the nearest first, from below. Where
-/// pieces cut each other, contact is proved as in collide().
+/// Limit points where quadratics are nearest bound the distance from above, pairs of nodes, the nearest first, from below.
+/// Where pieces cut each other, contact is proved as in collide().
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const Run& run = {});
 
@@ -36,45 +33,25 @@ struct PlacedPair {
       : a{pieces.a.model(), pieces.a, in_a.pose()}, b{pieces.b.model(), pieces.b, in_b.pose()} {}
 };
 
-/// Workspaces of two models for many poses, one pair a thread: what a thread has found out about pieces is of
-/// use for its next pose.
-class PairWorkspaces {
- public:
-  /// `threads`: 0 for all cores.
-  /// Requires:  the models outlive it.
-  PairWorkspaces(const SurfaceBvh& a, const SurfaceBvh& b, int threads = 0);
-
-  /// Calls ask(a, b, pose) for each pose in [0, count), on the threads, no two at once with the same pair of
-  /// workspaces.
-  /// Errors:    what `ask` throws ends the loop and is thrown again, of several one.
-  using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
-  void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor);
-
-  /// Answers of query(a, b, options, run), such as collide(), for each pose in order.
-  /// Guarantee: the same bits as one by one, for any number of threads.
-  template <class Answer, class Options>
-  [[nodiscard]] std::vector<Answer> answers(Answer (*query)(const PlacedBvh&, const PlacedBvh&,
-                                                            const Options&, const Run&),
-                                            std::span<const PosePair> poses, const Options& options,
-                                            const Run& run = {}) {
-    std::vector<Answer> result(poses.size());
-    const WorkMonitor quiet = stop_only(run);
-    const Run each{.monitor = &quiet, .max_splits = run.max_splits};
-    for_each(
-        poses.size(),
-        [&](SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t i) {
-          result[i] = query({a.model(), a, poses[i].a}, {b.model(), b, poses[i].b}, options, each);
-        },
-        monitor_of(run));
-    return result;
-  }
-
- private:
-  struct Pair {
-    Pair(const SurfaceBvh& in_a, const SurfaceBvh& in_b) : a(in_a), b(in_b) {}
-    SurfaceWorkspace a, b;
-  };
-  std::vector<std::unique_ptr<Pair>> pairs_;
-};
+/// Answers of query(a, b, options, run), such as collide(), for each pose in order. What threads find out about pieces stays in
+/// the run's workspace.
+/// Guarantee: the same bits as one by one, for any number of threads.
+/// Errors:    what `query` throws ends the loop and is thrown again, of several one.
+template <class Answer, class Options>
+[[nodiscard]] std::vector<Answer> answers_to(
+    Answer (*query)(const PlacedBvh&, const PlacedBvh&, const Options&, const Run&), const Surface& a,
+    const Surface& b, std::span<const PosePair> poses, const Options& options, const Run& run) {
+  std::vector<Answer> result(poses.size());
+  const WorkMonitor quiet = stop_only(run);
+  const Run each{.monitor = &quiet, .max_splits = run.max_splits};
+  const std::size_t step = 1 + poses.size() / 1000;
+  workers_of(run).for_each(poses.size(), [&](Workspace& workspace, std::size_t i) {
+    if (i % step == 0) monitor_of(run).report(static_cast<double>(i) / static_cast<double>(poses.size()));
+    const Workspace::Pieces::Pair pieces = workspace.pieces().of(a, b);
+    result[i] = query({pieces.a.model(), pieces.a, poses[i].a}, {pieces.b.model(), pieces.b, poses[i].b},
+                      options, each);
+  });
+  return result;
+}
 
 }  // namespace snug

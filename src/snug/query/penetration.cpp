@@ -90,7 +90,7 @@ class PenetrationSearch {
   [[nodiscard]] bool separated(const Vector3& d) {
     monitor_.checkpoint();
     if (!is_finite(b_.pose.offset() + d)) return false;
-    const CollideOptions options{.tolerance = 0, .prove_contact = false, .solid = true, .measure = false};
+    const CollideOptions options{.tolerance = 0, .solid = true};
     const Collision answer = collide(a_, moved(d), options, each());
     splits_ += answer.stats.splits;
     note(answer.outcome);

@@ -297,11 +297,7 @@ std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, cons
   if (const Distance* const answer = known.find(query)) return *answer;
   return naming_parts(names_of(pair.parts), [&]() -> std::optional<Distance> {
     // A verdict finds pairs beyond the limit sooner than a distance does.
-    const CollideOptions beyond{.margin = pair.margin,
-                                .witness = WitnessKind::none,
-                                .prove_contact = false,
-                                .solid = options.solid,
-                                .measure = false};
+    const CollideOptions beyond{.margin = pair.margin, .witness = WitnessKind::none, .solid = options.solid};
     if (collide(a, b, beyond, run).verdict == Verdict::separated) return {};
     Distance found = distance(a, b, options, run);
     if (found.distance.lower > pair.margin) return {};
@@ -315,7 +311,7 @@ namespace {
 // Answers every pair with ask(pair, workspace) and passes the answers to take(pair, answer) in order.
 template <class Answer, class Ask, class Take>
 std::uint64_t answer_pairs(SceneBroadPhase& pairs, const Run& run, const Ask& ask, const Take& take) {
-  Workers<Workspace> workers(workspace_of(run), run.threads);
+  Workers<Workspace> workers = workers_of(run);
   const WorkMonitor quiet = stop_only(run);
   std::uint64_t count = 0;
   for (double before = 0;; before = pairs.share()) {

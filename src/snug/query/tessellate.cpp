@@ -46,7 +46,7 @@ struct Vertex {
 
 // A piece of a root patch by splits in four. Where its quadratic is `coarse` only the triangle of the whole
 // piece is proved, and it is split in four or not at all.
-struct Piece {
+struct Tile {
   Index patch;
   PiecePath path;
   PiecePlace place;
@@ -184,7 +184,7 @@ class MeshRefinement {
   std::vector<std::array<TriangleParameter, 3>> at_;
   std::vector<Index> piece_;
   std::vector<double> error_;
-  std::vector<Piece> pieces_;
+  std::vector<Tile> pieces_;
   std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
   std::atomic<bool> stuck_{false};
 };
@@ -280,7 +280,7 @@ double MeshRefinement::thickness(const Patch& patch, const BoundingPoints& hull)
 
 // Finds the quadratic of a piece that is still one triangle; where it is coarse, the triangle's error.
 void MeshRefinement::learn(Worker& worker, Index t) {
-  Piece& piece = pieces_[piece_[t]];
+  Tile& piece = pieces_[piece_[t]];
   const Patch& patch = worker.patch(piece.patch, piece.path);
   BoundsCache& library = surface_.library();
   if (patch.kind->cacheable() || limits_.max_thickness < INFINITY)
@@ -300,7 +300,7 @@ void MeshRefinement::learn(Worker& worker, Index t) {
 }
 
 void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
-  Piece& piece = pieces_[piece_[t]];
+  Tile& piece = pieces_[piece_[t]];
   if (!piece.known) learn(worker, t);
   if (!piece.coarse) {
     const Flatness flatness = piece.quadratic.flatness(flat(t));
@@ -400,7 +400,7 @@ std::uint64_t MeshRefinement::count_after() const {
 
 // Which way to cut: lines inside that are less bent, and where none is bent shorter ones.
 std::size_t MeshRefinement::choose(Index t, unsigned marks) const {
-  const Piece& piece = pieces_[piece_[t]];
+  const Tile& piece = pieces_[piece_[t]];
   const std::size_t choices = split_count(marks);
   if (piece.coarse || choices == 1) return 0;
   std::array<TriangleParameter, 6> at;
@@ -477,7 +477,7 @@ void MeshRefinement::carry_out(const Cut& cut) {
     for (std::size_t k = 0; k < 3; ++k) at_[t][k] = local(shape.triangles[i][k]);
     piece_[t] = whole;
     if (!pieces_[whole].coarse) continue;
-    const Piece& parent = pieces_[whole];
+    const Tile& parent = pieces_[whole];
     piece_[t] = cut.first_piece + i;
     pieces_[piece_[t]] = {parent.patch, parent.path.child(i), parent.place.child(i), false, false, false, {}};
   }

@@ -191,7 +191,7 @@ class FirstContactSearch {
     monitor_.checkpoint();
     count_look();
     const Places at = places_at(time);
-    const CollideOptions wanted{.tolerance = 0, .witness = WitnessKind::none, .measure = false};
+    const CollideOptions wanted{.tolerance = 0, .witness = WitnessKind::none, .prove_contact = true};
     const Collision found = collide(at.a, at.b, wanted, for_look());
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;

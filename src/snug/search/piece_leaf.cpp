@@ -73,6 +73,11 @@ double PieceBounds::extent(const Vector3& w) const {
   return most;
 }
 
+FittedSet fitted_set(const PieceBuild& piece) {
+  const auto& [c, m, error] = piece.quadratic;
+  return {piece.box, {c[0], c[1], c[2], m[0], m[1], m[2]}, error};
+}
+
 PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method) {
   thread_local BoundingPoints points;
   PieceBuild result;

@@ -55,6 +55,9 @@ struct PieceBuild {
 };
 [[nodiscard]] PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method);
 
+/// The piece, for boxes above its own.
+[[nodiscard]] FittedSet fitted_set(const PieceBuild& piece);
+
 /// A node of pieces: boxes around up to N of them, and their records.
 template <std::size_t N>
 struct PieceLeaf : WideNode {

@@ -170,42 +170,6 @@ double PiecePairs::gap_along(const std::array<Node, 2>& nodes) {
   return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
 }
 
-bool PiecePairs::beyond(std::size_t side, const Vector3& w, double height, double error, std::size_t most,
-                        std::uint64_t budget, std::vector<Node>& out) {
-  thread_local std::vector<Node> open;
-  SurfaceWorkspace& workspace = frames_.workspace(side);
-  const PlacedFrame& frame = frames_.frame(side);
-  const Vector3 own = transposed_times(frame.rows, w);
-  open.assign(1, workspace.root());
-  while (!open.empty()) {
-    const Node node = open.back();
-    open.pop_back();
-    if (node.bounded()) {
-      if (placed_extent(side, node, w) <= height) continue;
-      const bool fine = frame.growth() * SurfaceWorkspace::bounds_of(node).error() <= error;
-      if (fine || !SurfaceWorkspace::can_open(node) || stats_.splits >= budget || workspace.full()) {
-        if (out.size() == most) return false;
-        out.push_back(node);
-        continue;
-      }
-      ++stats_.splits;
-    }
-    const SurfaceWorkspace::Opened opened = workspace.open(node);
-    stats_.box_tests += opened.count();
-    WideNode::Distances extents;
-    opened.boxes->extents(own, extents);
-    const Point3 origin = frame.apply(opened.boxes->origin());
-    const double placed = dot(w, origin - Point3{}) + 4 * frame.largest_apply_error() +
-                          40 * unit_roundoff * max_abs(origin - Point3{});
-    for (std::size_t i = 0; i < opened.count(); ++i) {
-      const double extent = frame.scale * static_cast<double>(extents[i]);
-      if (!(placed + extent + 8 * unit_roundoff * std::fabs(extent) <= height))
-        open.push_back(opened.child(i));
-    }
-  }
-  return true;
-}
-
 Witness PiecePairs::witness(const PiecePair& pieces) {
   ++stats_.evaluations;
   Witness found;

@@ -65,12 +65,6 @@ class PiecePairs {
   /// uses it, too.
   void look_along(const Vector3& direction);
   [[nodiscard]] double gap_along(const std::array<Node, 2>& nodes);
-  /// Pieces that reach beyond `height` along a direction, split while their quadratics err by more than
-  /// `error`, as far as `budget` allows. False, with some of them, where there are more than `most`.
-  /// Guarantee: dot(w, x) <= height for all other points of the placed surface.
-  /// Requires:  |w| at most 1 up to a few roundings.
-  [[nodiscard]] bool beyond(std::size_t side, const Vector3& w, double height, double error, std::size_t most,
-                            std::uint64_t budget, std::vector<Node>& out);
 
   /// The limit points at the pair's parameters, or the quadratics' own.
   [[nodiscard]] Witness witness(const PiecePair& pieces);

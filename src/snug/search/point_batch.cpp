@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
@@ -45,22 +45,16 @@ std::vector<OrderedPoint> spatial_order(std::span<const Point3> points) {
 
 }  // namespace
 
-void for_each_point(const SurfaceBvh& model, std::span<const Point3> points, int threads,
-                    const WorkMonitor& monitor,
+void for_each_point(const Surface& surface, std::span<const Point3> points, const Run& run,
                     const std::function<void(SurfaceWorkspace&, std::size_t)>& ask) {
   const std::vector<OrderedPoint> order = spatial_order(points);
+  const std::size_t step = 1 + points.size() / 1000;
   std::atomic<std::size_t> done{0};
-  parallel_for_with(
-      points.size(), threads, [&] { return SurfaceWorkspace(model); },
-      [&](SurfaceWorkspace& scratch, std::size_t begin, std::size_t end) {
-        for (const OrderedPoint& place : std::span(order).subspan(begin, end - begin)) {
-          ask(scratch, place.point);
-          const std::size_t count = ++done;
-          if (count % (1 + points.size() / 1000) == 0) {
-            monitor.report(static_cast<double>(count) / static_cast<double>(points.size()));
-          }
-        }
-      });
+  workers_of(run).for_each(points.size(), [&](Workspace& workspace, std::size_t i) {
+    ask(workspace.pieces().of(surface), order[i].point);
+    if (++done % step == 0)
+      monitor_of(run).report(static_cast<double>(done) / static_cast<double>(points.size()));
+  });
 }
 
 }  // namespace snug

@@ -8,6 +8,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/surface/control_hull.h>
 #include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {
@@ -107,20 +108,37 @@ WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonito
   if (!options.tight && patches_.size() >= options.min_lazy) {
     return {control_balls(*surface_, patches_), fit_to_control, options.part_level};
   }
+  if (options.tight) return make_tight_tree(options, monitor);
   std::vector<Point3> centres;
   centres.reserve(patches_.size());
   for (const PatchId p : patches_) centres.push_back(surface_->middle(p));
   return {centres, options.threads,
           [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
             monitor.checkpoint();
-            if (options.tight) {
-              const std::span<const PieceBuild> pieces = piece_builds(items);
-              for (const PieceBuild& piece : pieces) boxes.push_back(piece.box);
-              leaves_->keep(static_cast<std::uint32_t>(leaf), pieces);
-              return;
-            }
             fit_to_control(leaf, items, boxes);
           }};
+}
+
+WideBvh SurfaceBvh::make_tight_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
+  std::vector<PieceBuild> pieces(patches_.size());
+  std::vector<FittedSet> sets(patches_.size());
+  parallel_for(patches_.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+    Patch patch;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i % 64 == 0) monitor.checkpoint();
+      surface_->patch(patches_[i], patch);
+      pieces[i] = build_piece(surface_->library(), patch, method_);
+      sets[i] = fitted_set(pieces[i]);
+    }
+  });
+  WideBvh tree(sets);
+  std::array<PieceBuild, WideBvh::leaf_size> of_leaf;
+  for (std::size_t i = 0; i < tree.leaf_count(); ++i) {
+    const std::span<const std::uint32_t> items = tree.leaf(i);
+    for (std::size_t k = 0; k < items.size(); ++k) of_leaf[k] = pieces[items[k]];
+    leaves_->keep(static_cast<std::uint32_t>(i), std::span(of_leaf).first(items.size()));
+  }
+  return tree;
 }
 
 SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options,

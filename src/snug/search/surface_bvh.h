@@ -92,6 +92,7 @@ class SurfaceBvh {
   };
   [[nodiscard]] std::span<const PieceBuild> piece_builds(std::span<const std::uint32_t> items) const;
   [[nodiscard]] WideBvh make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
+  [[nodiscard]] WideBvh make_tight_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
   const LeafNode& make_leaf(std::uint32_t i) const;
   void find_extents();
 

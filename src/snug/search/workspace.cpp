@@ -72,12 +72,14 @@ void Workspace::Pieces::drop_old() {
 std::size_t Workspace::Pieces::bytes() const {
   std::size_t sum = 0;
   for (const auto& [name, entry] : entries_) sum += entry.pieces ? entry.pieces->bytes() : 0;
+  for (const Workspace& other : of_other_threads_) sum += other.bytes();
   return sum;
 }
 
 void Workspace::Pieces::clear() {
   recent_ = {};
   entries_.clear();
+  of_other_threads_.clear();
 }
 
 Workspace::Workspace() : pieces_(std::make_unique<Pieces>()) {}

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
+#include <vector>
 
 #include <snug/search/surface_data.h>
 #include <snug/search/surface_workspace.h>
+#include <support/workers.h>
 
 namespace snug {
 
@@ -21,6 +23,9 @@ class Workspace::Pieces {
     SurfaceWorkspace &a, &b;
   };
   [[nodiscard]] Pair of(const Surface& a, const Surface& b);
+
+  /// For the other threads of a run.
+  [[nodiscard]] std::vector<Workspace>& of_other_threads() { return of_other_threads_; }
 
   [[nodiscard]] std::size_t bytes() const;
   void clear();
@@ -45,12 +50,18 @@ class Workspace::Pieces {
 
   std::unordered_map<std::uint64_t, Entry> entries_;
   std::array<Recent, 8> recent_{};
+  std::vector<Workspace> of_other_threads_;
   std::uint64_t query_ = 0;
 };
 
 /// The workspace of a run.
 [[nodiscard]] inline Workspace& workspace_of(const Run& run) {
   return run.workspace != nullptr ? *run.workspace : Workspace::of_this_thread();
+}
+
+/// The threads of a run, each with a workspace of its own that is kept for the next run.
+[[nodiscard]] inline Workers<Workspace> workers_of(const Run& run) {
+  return {workspace_of(run), run.threads, workspace_of(run).pieces().of_other_threads()};
 }
 
 }  // namespace snug
