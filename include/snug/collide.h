@@ -31,9 +31,8 @@ struct CollideOptions {
   std::optional<double> tolerance{};
   double margin = 0;                         ///< >= 0, mesh units
   WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
-  /// Before returning `within`, try to prove `intersecting`: some 30 microseconds for a contact. Without it one proof is tried
-  /// where the verdict had to split pieces anyway.
-  bool prove_contact = false;
+  bool prove_contact =
+      false;           ///< before `within`, try to prove `intersecting`: about 30 microseconds a contact
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
   /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give witnesses
   /// if any are asked for: about ten microseconds more. Without it the lower end is what supporting planes of the whole show.
