@@ -26,7 +26,7 @@ struct Sample {
 };
 
 struct Counts {
-  std::size_t samples = 0, records = 0, near_error = 0, near_extent = 0;
+  std::size_t samples = 0, records = 0, near_error = 0, near_extent = 0, distances = 0, narrow = 0;
   unsigned deepest = 0;
 };
 
@@ -56,6 +56,32 @@ void expect_known(const Node& node, const Sample& sample, const Vector3& w, cons
                     extent = record.extent(w) + size * record.error();
   ASSERT_LE(height, extent + size * known) << name << ": beyond the extent";
   counts.near_extent += extent - height < 0.1L * size * node.size();
+}
+
+// From a point beside the piece, on it, or far away: no limit point is nearer than the lower bound, and the quadratic's point is
+// as near as the upper one.
+void expect_distances(const Node& node, const Sample& sample, std::mt19937_64& random,
+                      const std::string& name, Counts& counts) {
+  const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+  if (!std::isfinite(record.radius())) return;
+  const Point3& origin = node.boxes->origin();
+  const Extended x = testing::minus(sample.x, testing::extended(origin));
+  const double away = static_cast<double>(node.size()) * std::array{0.0, 1e-3, 1.0, 30.0, 1e6}[random() % 5];
+  Vector3 point;
+  for (std::size_t k = 0; k < 3; ++k)
+    point[k] = static_cast<double>(x[k]) + away * (testing::unit(random) - 0.5);
+  const PieceBounds::QuadraticDistance found = record.distance(point);
+  const auto apart = [&](const Extended& p) {
+    const Extended off{p[0] - point.x, p[1] - point.y, p[2] - point.z};
+    return std::sqrt(testing::inner(off, off));
+  };
+  ASSERT_LE(found.lower - record.error(), apart(x) + sample.known + 0x1p-58L * (1 + away)) << name;
+  const Vector3 at = record.at(found.at);
+  const long double quadratic = apart({at.x, at.y, at.z});
+  ASSERT_LE(quadratic, found.upper + 0x1p-50L * (1 + away)) << name;
+  ASSERT_LE(found.lower, quadratic + 0x1p-50L * (1 + away)) << name;
+  ++counts.distances;
+  counts.narrow += found.upper - found.lower < 0.05 * static_cast<double>(node.size());
 }
 
 // Also along an axis or across the piece: of long and of short vectors.
@@ -88,7 +114,9 @@ void expect_piece_known(SurfaceWorkspace& workspace, const Node& node, std::mt19
     for (std::size_t k = 0; k < 3; ++k) x[k] = static_cast<long double>(patch.origin[k]) + point.relative[k];
     // Parameters on the far edge are rounded to it.
     const double rounded = i == 4 ? 0x1p-50 * static_cast<double>(node.size()) : 0;
-    expect_known(node, {at, x, 1.75L * point.error + rounded}, any_direction(random, node), name, counts);
+    const Sample sample{at, x, 1.75L * point.error + rounded};
+    expect_known(node, sample, any_direction(random, node), name, counts);
+    expect_distances(node, sample, random, name, counts);
     if (::testing::Test::HasFatalFailure()) return;
   }
 }
@@ -131,6 +159,7 @@ TEST(piece_record, holds_limit_points_of_every_kind) {
   EXPECT_GE(counts.deepest, 18u);
   EXPECT_GT(counts.near_error, testing::fewer(200));
   EXPECT_GT(counts.near_extent, testing::fewer(200));
+  EXPECT_GT(counts.narrow, counts.distances / 3);
 }
 
 // Parameters of a sample in the children that hold it, exact for multiples of powers of two.
@@ -157,6 +186,7 @@ void expect_samples_known(SurfaceWorkspace& workspace, const Node& node, const s
   const Vector3 w = any_direction(random, node);
   for (const Sample& sample : samples) {
     expect_known(node, sample, w, name, counts);
+    expect_distances(node, sample, random, name, counts);
     if (::testing::Test::HasFatalFailure()) return;
   }
   if (levels == 0 || !SurfaceWorkspace::can_open(node)) return;

@@ -311,8 +311,9 @@ Deepest walk_step(const NodeRows& node, std::uint32_t count, const NodeRows& oth
   return result;
 }
 
-void boxes_to_point(const float* node, const float* point, float slack, float* out) {
+Near boxes_to_point(const float* node, const float* point, float slack, float prune_distance, float* out) {
   const Tag d;
+  Near near{0, INFINITY};
   const std::size_t n = hn::Lanes(d);
   for (std::size_t at = 0; at < 8; at += n) {
     const auto row = [&](std::size_t r) { return hn::LoadU(d, node + 8 * r + at); };
@@ -330,8 +331,9 @@ void boxes_to_point(const float* node, const float* point, float slack, float* o
     }
     const V gap_of_all = outside(gap, gap);
     const V known = hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), gap_of_all, hn::Set(d, -INFINITY));
-    hn::StoreU(computed(known), d, out + at);
+    store(known, prune_distance, at, out, near);
   }
+  return near;
 }
 
 void extents(const float* node, float reach, const float* direction, float* out) {
@@ -382,8 +384,8 @@ Near obb_distances(const float* node, float reach, const SeenBox& other, const T
   return HWY_DYNAMIC_DISPATCH(seen_box)(node, reach, other, turn, slack, prune_distance, out);
 }
 
-void obb_distances(const float* node, const float point[3], float slack, float* out) {
-  HWY_DYNAMIC_DISPATCH(boxes_to_point)(node, point, slack, out);
+Near obb_distances(const float* node, const float point[3], float slack, float prune_distance, float* out) {
+  return HWY_DYNAMIC_DISPATCH(boxes_to_point)(node, point, slack, prune_distance, out);
 }
 
 Deepest near_boxes(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,

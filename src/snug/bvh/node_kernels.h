@@ -30,7 +30,7 @@ struct Near {
 /// `reach`: at least the sum of a box's half sizes and the absolute coordinates of its centre.
 Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
                    float* out);
-void obb_distances(const float* node, const float point[3], float slack, float* out);
+Near obb_distances(const float* node, const float point[3], float slack, float prune_distance, float* out);
 /// How far the boxes reach along a direction.
 void obb_extents(const float* node, float reach, const float direction[3], float* out);
 

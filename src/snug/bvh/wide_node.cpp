@@ -130,11 +130,14 @@ WideNode::Near WideNode::distances(const PlacedBox& other, double slack, float p
   return {near.places & ((1u << count_) - 1), near.others};
 }
 
-void WideNode::distances(const Point3& point, double slack, Distances& out) const {
+WideNode::Near WideNode::distances(const Point3& point, double slack, float prune_distance,
+                                   Distances& out) const {
   const Vector3 offset = point - origin_;
   const float centre[3] = {static_cast<float>(offset.x), static_cast<float>(offset.y),
                            static_cast<float>(offset.z)};
-  kernels::obb_distances(rows_.data(), centre, float_up(slack + single_underflow), out.data());
+  const Near near = kernels::obb_distances(rows_.data(), centre, float_up(slack + single_underflow),
+                                           prune_distance, out.data());
+  return {near.places & ((1u << count_) - 1), near.others};
 }
 
 void WideNode::extents(const Vector3& direction, Distances& out) const {

@@ -80,7 +80,10 @@ class alignas(32) WideNode {
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
   /// The same to a point.
-  void distances(const Point3& point, double slack, Distances& out) const;
+  Near distances(const Point3& point, double slack, float prune_distance, Distances& out) const;
+  void distances(const Point3& point, double slack, Distances& out) const {
+    static_cast<void>(distances(point, slack, INFINITY, out));
+  }
   /// Upper bounds of dot(direction, x - origin()) over the boxes.
   /// Requires:  |direction| about 1.
   void extents(const Vector3& direction, Distances& out) const;

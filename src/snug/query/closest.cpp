@@ -2,8 +2,11 @@
 #include <snug/search/workspace.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
@@ -16,6 +19,7 @@
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/error.h>
+#include <support/ordering.h>
 #include <support/run.h>
 
 namespace snug {
@@ -55,30 +59,49 @@ class ClosestSearch {
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::closest_point)),
         bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
-                *options.relative, point_noise * (2 + max_abs(to_ - Point3{}))) {}
+                *options.relative, point_noise * (2 + max_abs(to_ - Point3{}))),
+        coarse_(surface_.scale().apply(*options.absolute) > 0x1p-16 * (4 + max_abs(to_ - Point3{}))) {}
 
   ClosestPoint run() {
     workspace_.begin();
-    thread_local NearestFirst<NodeGap> open;
-    open.start({workspace_.root(), 0});
-    while (!open.empty()) {
-      const NodeGap nearest = open.take();
+    make_room();
+    add({workspace_.root(), 0});
+    while (waiting_ > 0) {
+      const NodeGap nearest = take_next();
       const double gap = static_cast<double>(nearest.gap);
-      if (gap >= bounds_.prune_distance() || !visit(nearest.node, gap, open)) {
+      if (gap >= bounds_.prune_distance()) {
+        bounds_.prune(gap);
+      } else if (!visit(nearest.node, gap)) {
         bounds_.prune(gap);
         break;
       }
     }
+    for (std::size_t i = 0; i < waiting_; ++i) bounds_.prune(static_cast<double>(open_[i].gap));
     return result();
   }
 
  private:
+  // What waits: depth first, or the nearest of all first, which takes longer for each and has fewer pieces to split.
+  void make_room() {
+    if (open_.size() < waiting_ + WideNode::width) open_.resize(2 * (waiting_ + WideNode::width));
+  }
+  void add(const NodeGap& node) {
+    open_[waiting_++] = node;
+    if (!coarse_) ordering::push_heap(open_.data(), waiting_, farther);
+  }
+  NodeGap take_next() {
+    if (!coarse_) ordering::pop_heap(open_.data(), waiting_, farther);
+    return open_[--waiting_];
+  }
+  static bool farther(const NodeGap& x, const NodeGap& y) { return x.gap > y.gap; }
+
   // False when the budget ends.
-  bool visit(Node node, double gap, NearestFirst<NodeGap>& open) {
+  bool visit(const Node& node, double gap) {
     if (node.bounded()) {
       monitor_.checkpoint();
       const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
-      gap = std::max(gap, look_at(node, {record.base(node.boxes->origin()), record.radius()}));
+      gap = std::max(gap, coarse_ ? gap_in_single(node, record)
+                                  : look_at(node, {record.base(node.boxes->origin()), record.radius()}));
       const bool last = !SurfaceWorkspace::can_open(node);
       if (last && gap < bounds_.prune_distance()) {
         // Single precision is what is left of it.
@@ -96,16 +119,33 @@ class ClosestSearch {
     splits_ += node.bounded();
     const SurfaceWorkspace::Opened opened = workspace_.open(node);
     WideNode::Distances gaps;
-    opened.boxes->distances(to_, point_error_, gaps);
-    for (std::size_t i = 0; i < opened.count(); ++i) {
-      const float least = std::max({gaps[i], single_down(gap), 0.0F});
-      if (static_cast<double>(least) >= bounds_.prune_distance()) {
-        bounds_.prune(static_cast<double>(least));
-      } else {
-        open.add({opened.child(i), least});
-      }
+    const auto most = static_cast<float>(bounds_.prune_distance());
+    const WideNode::Near near = opened.boxes->distances(to_, point_error_, most, gaps);
+    bounds_.prune(static_cast<double>(near.others));
+    const float parent = std::max(single_down(gap), 0.0F);
+    if (near.places == 0) return true;
+    make_room();
+    auto nearest = static_cast<std::size_t>(std::countr_zero(near.places));
+    for (std::uint32_t rest = near.places & (near.places - 1); rest != 0; rest &= rest - 1) {
+      auto place = static_cast<std::size_t>(std::countr_zero(rest));
+      if (gaps[place] < gaps[nearest]) std::swap(place, nearest);
+      add({opened.child(place), std::max(gaps[place], parent)});
     }
+    add({opened.child(nearest), std::max(gaps[nearest], parent)});
     return true;
+  }
+
+  // A lower bound of the distance of a piece, by its quadratic as triangles in single precision; improves the upper one.
+  double gap_in_single(const Node& node, const PieceBounds& record) {
+    if (!(record.radius() < INFINITY)) return 0;
+    const auto [lower, upper, at] = record.distance(to_ - node.boxes->origin());
+    const double doubt = enlarged(record.error() + 2 * spatial_error(point_error_) +
+                                  4 * unit_roundoff * max_abs(to_ - Point3{}));
+    if (upper + doubt < bounds_.upper()) {
+      bounds_.reduce_upper(upper + doubt);
+      nearest_ = OnQuadratic{node, at};
+    }
+    return lower - doubt;
   }
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
@@ -113,24 +153,27 @@ class ClosestSearch {
     const NearestTriangles near = nearest({to_, to_, to_}, offset.base);
     double gap = rounded_down(near.certain_distance - enlarged(offset.radius + spatial_error(point_error_)));
     if (near.certain_distance < bounds_.upper()) {
-      const TriangleParameter at = clamped(near.on_b);
-      const Patch& patch = workspace_.patch(node);
-      const BoundedPoint found = limit_point(patch, at).from(patch.origin);
-      const Vector3 between = found.position - to_;
-      // Not enlarged(): of a point far away that would be more than all else.
-      const double upper =
-          (std::sqrt(length_sq(between) + 8 * underflow_error) + spatial_error(found.error + point_error_) +
-           8 * unit_roundoff * max_abs(between)) *
-          (1 + 16 * unit_roundoff);
-      if (upper < bounds_.upper()) {
-        bounds_.reduce_upper(upper);
-        closest_ = found;
-        at_ = place_of(surface_, workspace_.root_of(node), to_face(patch.path, at));
-      }
+      take(node, clamped(near.on_b));
     }
     // A plane between the point and the quadratic, across the direction of the closest point so far.
     if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(node, closest_.position - to_));
     return gap;
+  }
+
+  // The limit point at a parameter, if none as near is known.
+  void take(const Node& node, TriangleParameter at) {
+    const Patch& patch = workspace_.patch(node);
+    const BoundedPoint found = limit_point(patch, at).from(patch.origin);
+    const Vector3 between = found.position - to_;
+    // Not enlarged(): of a point far away that would be more than all else.
+    const double upper = (std::sqrt(length_sq(between) + 8 * underflow_error) +
+                          spatial_error(found.error + point_error_) + 8 * unit_roundoff * max_abs(between)) *
+                         (1 + 16 * unit_roundoff);
+    if (!(upper < closest_distance_)) return;
+    closest_distance_ = upper;
+    bounds_.reduce_upper(upper);
+    closest_ = found;
+    at_ = place_of(surface_, workspace_.root_of(node), to_face(patch.path, at));
   }
 
   [[nodiscard]] double plane_gap(const Node& node, const Vector3& direction) {
@@ -144,7 +187,8 @@ class ClosestSearch {
            16 * underflow_error;
   }
 
-  ClosestPoint result() const {
+  ClosestPoint result() {
+    if (nearest_ && bounds_.upper() < closest_distance_) take(nearest_->node, nearest_->at);
     const PowerOfTwo back = surface_.scale().inverse();
     const Interval distance{unscaled_down(std::max(0.0, bounds_.lower()), back),
                             require_representable(unscaled_up(bounds_.upper(), back))};
@@ -162,7 +206,17 @@ class ClosestSearch {
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;
   DistanceBounds bounds_;
+  bool coarse_;                                        // far above the roundings of single precision
+  std::vector<NodeGap>& open_ = workspace_.waiting();  // the first of them wait
+  std::size_t waiting_ = 0;
+  // Where a quadratic came nearest that is known to be nearer than the point.
+  struct OnQuadratic {
+    Node node;
+    TriangleParameter at;
+  };
+  std::optional<OnQuadratic> nearest_;
   BoundedPoint closest_;
+  double closest_distance_ = INFINITY;
   Place at_{};
   std::uint64_t splits_ = 0;
   bool budget_spent_ = false;

@@ -5,6 +5,7 @@
 
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
+#include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
 
 namespace snug {
@@ -34,6 +35,19 @@ PieceBounds::PieceBounds(const OffsetTriangle& offset, const QuadraticTriangle& 
   const double rounding = 128 * unit_roundoff * largest + 8 * underflow_error;
   // base() rounds a sum.
   base_moved += 2 * unit_roundoff * (max_abs(origin - Point3{}) + largest);
+  // Between parameters of a quarter of the edges, second differences are a sixteenth; a parabola is off its chords' triangle by two
+  // thirds of them at most.
+  double bend = 0, spread = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 a = wide(net_[k]), b = wide(net_[(k + 1) % 3]), m = wide(net_[3 + k]);
+    bend = std::max(bend, length((m - a) + (m - b)));
+  }
+  for (std::size_t k = 1; k < 6; ++k) {
+    const Vector3 v = wide(net_[k]) - wide(net_[0]);
+    spread = std::max(spread, std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+  }
+  flattening_ = float_up(enlarged(bend / 48));
+  spread_ = float_up(enlarged(2 * spread));
   radius_ = float_up(enlarged(offset.radius + spatial_error(base_moved + rounding)));
   error_ = float_up(enlarged(quadratic.error + spatial_error(moved + rounding)));
   // Not a number is not less.
@@ -58,6 +72,18 @@ std::array<Vector3, 2> PieceBounds::derivatives(TriangleParameter at) const {
   for (std::size_t k = 0; k < 6; ++k) net[k] = wide(net_[k]);
   return {2 * (r * (net[3] - net[0]) + u * (net[1] - net[3]) + v * (net[4] - net[5])),
           2 * (r * (net[5] - net[0]) + u * (net[4] - net[3]) + v * (net[2] - net[5]))};
+}
+
+PieceBounds::QuadraticDistance PieceBounds::distance(const Vector3& point) const {
+  const float seen[3] = {static_cast<float>(point.x), static_cast<float>(point.y),
+                         static_cast<float>(point.z)};
+  const auto [low, far, at] = flattened_distance(net_[0].data(), seen);
+  const double lower = static_cast<double>(low), upper = static_cast<double>(far);
+  const double sizes = std::fabs(point.x) + std::fabs(point.y) + std::fabs(point.z) + 2 * upper +
+                       8 * static_cast<double>(spread_);
+  // 64 roundings to single precision, and what underflows.
+  const double doubt = enlarged(static_cast<double>(flattening_) + 0x1p-18 * sizes) + 0x1p-55;
+  return {lower - doubt, upper + doubt, clamped({at.u, at.v})};
 }
 
 // Over the Bezier points of the four parts after a split, those that are no means of others.

@@ -6,6 +6,7 @@
 
 #include <snug/bounds/quadratic.h>
 #include <snug/bvh/wide_node.h>
+#include <snug/geometry/quadratic_distance.h>
 #include <snug/search/piece.h>
 
 namespace snug {
@@ -35,6 +36,18 @@ class PieceBounds {
   [[nodiscard]] double extent(const Vector3& w) const;
   [[nodiscard]] double error() const { return static_cast<double>(error_); }
 
+  /// Bounds of the distance of a point, relative to the origin, from the quadratic. At the parameter it is no more than the
+  /// upper one. They are 2^-16 of the distance and of the point's and the piece's coordinates apart, and what sixteen flat
+  /// triangles are from the quadratic.
+  /// Requires:  a finite radius; coordinates of the point at most 2^42.
+  /// Cost:      50 ns.
+  /// Source:    derivations/closest.md.
+  struct QuadraticDistance {
+    double lower, upper;
+    TriangleParameter at;
+  };
+  [[nodiscard]] QuadraticDistance distance(const Vector3& point) const;
+
  private:
   using Single3 = std::array<float, 3>;
   [[nodiscard]] static Vector3 wide(const Single3& v) {
@@ -44,6 +57,8 @@ class PieceBounds {
   std::array<Single3, 3> base_{};
   std::array<Single3, 6> net_{};  // of the quadratic: corners, then middles of the edges 01, 12, 20
   float radius_ = 0, error_ = 0;
+  // Upper bounds of |quadratic - triangles| and, twice, of |x|_1 for differences of Bezier points from the first.
+  float flattening_ = 0, spread_ = 0;
 };
 
 /// Bounds of a piece before its node, and so the origin they are relative to, is made.

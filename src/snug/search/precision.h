@@ -63,12 +63,6 @@ class DistanceBounds {
   double upper_ = INFINITY, pruned_ = INFINITY, floor_ = 0;
 };
 
-/// A node, and a lower bound of how far it is.
-struct NodeGap {
-  Node node;
-  float gap;
-};
-
 /// Queue of items to open, ordered by a lower bound `gap` of their distance, nearest first.
 template <class Item>
 class NearestFirst {

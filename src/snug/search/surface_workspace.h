@@ -23,6 +23,12 @@ struct Node {
   [[nodiscard]] float size() const { return boxes->size_of(place); }
 };
 
+/// A node, and a lower bound of how far it is.
+struct NodeGap {
+  Node node;
+  float gap;
+};
+
 /// Extents of the latest pieces, by a hash of the piece, each along a direction that has a number of its own.
 class KnownExtents {
  public:
@@ -106,6 +112,8 @@ class SurfaceWorkspace {
 
   /// For a query that asks for extents of pieces along one direction many times.
   [[nodiscard]] KnownExtents& extents() { return extents_; }
+  /// Memory for nodes that wait in a query that goes down one tree.
+  [[nodiscard]] std::vector<NodeGap>& waiting() { return waiting_; }
 
   /// Has this query reached the limit of distinct splits?
   [[nodiscard]] bool full() const { return touched_ >= max_pieces_; }
@@ -152,6 +160,7 @@ class SurfaceWorkspace {
   std::size_t max_pieces_;
   BoundingPoints points_;
   KnownExtents extents_;
+  std::vector<NodeGap> waiting_;
   Roots roots_;
   // Elements beyond the counts are spare memory.
   std::deque<Split> splits_;
