@@ -263,15 +263,13 @@ Extent extent_of(const FittedSet& set, const Vector3& direction) {
           std::min(of_box.upper, middle + of_net.upper + reach)};
 }
 
-Obb box_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which) {
-  thread_local std::vector<Obb> boxes;
-  boxes.clear();
-  for (const std::uint32_t i : which) boxes.push_back(sets[i].box);
-  return fit_box(turned_to_fit(axes_around(boxes), boxes), [&](const Vector3& axis) {
-    Extent all;
-    for (const std::uint32_t i : which) all.add(extent_of(sets[i], axis));
-    return all;
-  });
+Axes axes_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which) {
+  // Those of many boxes are about those of some.
+  constexpr std::size_t max_boxes = 256;
+  std::vector<Obb> boxes;
+  const std::size_t stride = (which.size() + max_boxes - 1) / max_boxes;
+  for (std::size_t i = 0; i < which.size(); i += stride) boxes.push_back(sets[which[i]].box);
+  return turned_to_fit(axes_around(boxes), boxes);
 }
 
 Obb merge(std::span<const Obb> boxes, const Axes& axes) {

@@ -67,8 +67,8 @@ struct FittedSet {
 /// Bounds of dot(direction, x) over such a set, rounding included.
 /// Requires:  |direction| 1 up to a few roundings.
 [[nodiscard]] Extent extent_of(const FittedSet& set, const Vector3& direction);
-/// A box around one or more of these.
-[[nodiscard]] Obb box_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which);
+/// Axes that suit a box around one or more of these.
+[[nodiscard]] Axes axes_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which);
 
 /// A ball around a box.
 struct Ball {

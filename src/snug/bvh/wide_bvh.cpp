@@ -180,8 +180,18 @@ class WideBvh::Builder {
       return static_cast<double>(size()) * (h.x * h.y + h.y * h.z + h.z * h.x);
     }
   };
-  [[nodiscard]] Range range(std::size_t begin, std::size_t end) const {
-    return {begin, end, box_around(sets_, items_.subspan(begin, end - begin))};
+  [[nodiscard]] Range range(std::size_t begin, std::size_t end) {
+    const Axes axes = axes_around(sets_, items_.subspan(begin, end - begin));
+    std::array<Extent, 3> all;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Extent extent = extent_of(sets_[items_[i]], axes[k]);
+        all[k].add(extent);
+        sides_[i].lower[k] = static_cast<float>(std::max(extent.lower, -1e6));
+        sides_[i].upper[k] = static_cast<float>(std::min(extent.upper, 1e6));
+      }
+    }
+    return {begin, end, box_of(axes, all)};
   }
   // Makes what is below a box; the name of it.
   std::uint32_t make(const Range& whole) {
@@ -229,27 +239,21 @@ class WideBvh::Builder {
   std::size_t split(const Range& range) {
     const std::size_t count = range.size();
     const std::span<std::uint32_t> items = items_.subspan(range.begin, count);
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Extent extent = extent_of(sets_[items[i]], range.box.axes[k]);
-        sides_[i].lower[k] = static_cast<float>(std::max(extent.lower, -1e6));
-        sides_[i].upper[k] = static_cast<float>(std::min(extent.upper, 1e6));
-      }
-    }
+    const std::span<const Sides> sides = std::span(sides_).subspan(range.begin, count);
     // An eighth at least on either side, so that trees are not deep.
     const std::size_t least_part = count > 8 * leaf_size ? count / 8 : 0;
     float least = INFINITY;
     std::size_t best = (count / leaf_size + 1) / 2 * leaf_size, best_axis = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      sort_along(k, count);
+      sort_along(k, sides);
       left_.clear();
       Sides first, last;
       for (std::size_t i = 0; i < count; ++i) {
         if (i > 0 && i % leaf_size == 0) left_.push_back(first.surface());
-        first.add(sides_[order_[i].second]);
+        first.add(sides[order_[i].second]);
       }
       for (std::size_t i = count - 1; i > 0; --i) {
-        last.add(sides_[order_[i].second]);
+        last.add(sides[order_[i].second]);
         if (i % leaf_size != 0 || i < least_part || count - i < least_part) continue;
         const float cost =
             left_[i / leaf_size - 1] * static_cast<float>(i) + last.surface() * static_cast<float>(count - i);
@@ -259,14 +263,15 @@ class WideBvh::Builder {
         best_axis = k;
       }
     }
-    if (best_axis != 2) sort_along(best_axis, count);
+    if (best_axis != 2) sort_along(best_axis, sides);
     for (std::size_t i = 0; i < count; ++i) order_[i].second = items[order_[i].second];
     for (std::size_t i = 0; i < count; ++i) items[i] = order_[i].second;
     return range.begin + best;
   }
-  void sort_along(std::size_t axis, std::size_t count) {
+  void sort_along(std::size_t axis, std::span<const Sides> sides) {
+    const std::size_t count = sides.size();
     for (std::size_t i = 0; i < count; ++i)
-      order_[i] = {sides_[i].lower[axis] + sides_[i].upper[axis], static_cast<std::uint32_t>(i)};
+      order_[i] = {sides[i].lower[axis] + sides[i].upper[axis], static_cast<std::uint32_t>(i)};
     std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
@@ -274,7 +279,7 @@ class WideBvh::Builder {
   std::span<std::uint32_t> items_;
   std::vector<TreeNode>& nodes_;
   std::vector<std::pair<float, std::uint32_t>> order_;
-  std::vector<Sides> sides_;
+  std::vector<Sides> sides_;  // of the items, along the axes of the range that they are in
   std::vector<float> left_;
 };
 
@@ -286,7 +291,14 @@ WideBvh::WideBvh(std::span<const FittedSet> sets) : WideBvh(sets.size()) {
   made_ = std::vector<std::atomic<bool>>(nodes_.size());
   for (auto& made : made_) made.store(true, std::memory_order_relaxed);
   std::vector<Obb> leaves;
-  for (std::size_t i = 0; i < leaf_count(); ++i) leaves.push_back(box_around(sets, leaf(i)));
+  for (std::size_t i = 0; i < leaf_count(); ++i) {
+    const std::span<const std::uint32_t> items = leaf(i);
+    leaves.push_back(fit_box(axes_around(sets, items), [&](const Vector3& axis) {
+      Extent all;
+      for (const std::uint32_t item : items) all.add(extent_of(sets[item], axis));
+      return all;
+    }));
+  }
   finish(whole.box, ball_around(leaves), leaves);
 }
 
