@@ -31,11 +31,10 @@ struct CollideOptions {
   std::optional<double> tolerance{};
   double margin = 0;                         ///< >= 0, mesh units
   WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
-  bool prove_contact =
-      false;           ///< before `within`, try to prove `intersecting`: about 30 microseconds a contact
+  /// Before `within`, try hard to prove `intersecting`, which by default is tried only where it costs no more than the verdict.
+  bool prove_contact = false;
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
-  /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give witnesses
-  /// if any are asked for: about ten microseconds more. Without it the lower end is what supporting planes of the whole show.
+  /// Separated: bring the ends of `distance` to within a factor of 2, with witnesses, for ten microseconds more.
   bool measure = false;
 };
 

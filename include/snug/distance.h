@@ -32,7 +32,7 @@ struct Distance {
 /// Errors:    InputError: (value) for a precision that is negative or not finite; (unrepresentable) if a
 ///            result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
 ///            `solid` if a surface is not closed. Interrupted.
-/// Cost:      about 200 microseconds at 0.1 % of the size (bench/results/distance.txt).
+/// Cost:      about 170 microseconds at 0.1 % of the size (bench/results/bars.txt).
 [[nodiscard]] SNUG_API Distance distance(const PlacedSurface& a, const PlacedSurface& b,
                                          const DistanceOptions& options = {}, const Run& run = {});
 /// The same bits for many poses, in the same order.
@@ -55,7 +55,7 @@ struct ClosestPoint : LimitPoint {
 /// Errors:    InputError: (value) for a point that is not finite or more than 10^12 sizes of the surface
 ///            away, and for a precision that is negative or not finite; (refused) if no face of the mesh has
 ///            a limit surface; (unrepresentable) for a result that does not fit a double. Interrupted.
-/// Cost:      about 10 microseconds at 0.1 % of the size, about 100 at 1e-9 (bench/results/distance.txt).
+/// Cost:      2 to 4 microseconds at 0.1 % of the size, 10 at 0.01 %, 50 at 1e-9 (bench/results/bars.txt).
 [[nodiscard]] SNUG_API ClosestPoint closest_point(const Surface& surface, const Point3& to,
                                                   const Precision& precision = {}, const Run& run = {});
 /// The same for many points, in the same order.

@@ -68,7 +68,7 @@ struct Certificate {
 struct Run {
   int threads = 0;                       ///< 0: all cores
   const WorkMonitor* monitor = nullptr;  ///< progress and interruption of what may throw Interrupted
-  Workspace* workspace = nullptr;        ///< of single queries; default: that of the calling thread
+  Workspace* workspace = nullptr;        ///< for one call at a time; default: that of the calling thread
   /// Budget: most splits of pieces for an answer. Searches that refine something else, such as triangles or pairs of
   /// pieces, count that. Functions name their unit, default and memory under "Budget".
   std::optional<std::uint64_t> max_splits{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <functional>
@@ -16,9 +17,20 @@ template <class State>
 class Workers {
  public:
   /// `threads`: 0 for all cores.
-  Workers(State& own, int threads) : own_(own), others_(made_) { make(threads); }
-  /// The other threads' states are `kept` for the next time.
-  Workers(State& own, int threads, std::vector<State>& kept) : own_(own), others_(kept) { make(threads); }
+  Workers(State& own, int threads) : Workers(own, threads, nullptr) {}
+  /// The other threads' states come from `kept` and go back there in the end: a loop within this one makes its own.
+  Workers(State& own, int threads, std::vector<State>* kept) : own_(own), kept_(kept) {
+    if (kept_ != nullptr) others_.swap(*kept_);
+    // No more threads than these are ever started.
+    const int most = std::max(hardware_threads(), 4);
+    threads_ = static_cast<std::size_t>(threads > 0 ? std::min(threads, most) : hardware_threads());
+    if (others_.size() + 1 < threads_) others_.resize(threads_ - 1);
+  }
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+  ~Workers() {
+    if (kept_ != nullptr) kept_->swap(others_);
+  }
 
   /// Calls work(state) on all threads, each with its own.
   /// Errors:    what `work` throws is thrown again once all have ended, of several one.
@@ -37,10 +49,6 @@ class Workers {
   [[nodiscard]] std::size_t threads() const { return threads_; }
 
  private:
-  void make(int threads) {
-    threads_ = static_cast<std::size_t>(threads > 0 ? threads : hardware_threads());
-    if (others_.size() + 1 < threads_) others_.resize(threads_ - 1);
-  }
   void share(std::size_t count, const std::function<void(SharedRanges&, State&)>& work) {
     const std::thread::id caller = std::this_thread::get_id();
     std::atomic<std::size_t> taken{0};
@@ -51,8 +59,8 @@ class Workers {
   }
 
   State& own_;
-  std::vector<State> made_;
-  std::vector<State>& others_;
+  std::vector<State>* kept_;
+  std::vector<State> others_;
   std::size_t threads_ = 1;
 };
 

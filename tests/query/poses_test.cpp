@@ -1,4 +1,5 @@
 #include <snug/distance.h>
+#include <snug/scene.h>
 
 #include <gtest/gtest.h>
 #include <support/error.h>
@@ -54,6 +55,37 @@ TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
     }
     EXPECT_GE(verdicts.size(), 2u);
   }
+}
+
+// What other threads of the outer loop have in use must not move.
+TEST_F(poses, may_be_asked_while_a_scene_is) {
+  const std::vector<Collision> expected = collide(a, b, list);
+  Scene scene;
+  for (int i = 0; i < 12; ++i)
+    scene.parts.push_back((i % 2 == 0 ? a : b).at(Motion::translation({0.4 * i, 0, 0})));
+  std::size_t asked = 0;
+  static_cast<void>(collide(scene, {},
+                            [&](const PairCollision&) {
+                              const std::vector<Collision> found = collide(a, b, list, {}, {.threads = 4});
+                              for (std::size_t i = 0; i < list.size(); ++i)
+                                EXPECT_EQ(found[i].distance, expected[i].distance);
+                              ++asked;
+                            },
+                            {.threads = 3}));
+  EXPECT_GT(asked, 5u);
+}
+
+TEST_F(poses, keep_what_their_threads_found_out) {
+  Workspace workspace;
+  static_cast<void>(collide(a, b, list, {.tolerance = 1e-7, .prove_contact = true},
+                            {.threads = 3, .workspace = &workspace}));
+  const std::size_t bytes = workspace.bytes();
+  EXPECT_GT(bytes, 0u);
+  static_cast<void>(collide(a, b, list, {.tolerance = 1e-7, .prove_contact = true},
+                            {.threads = 3, .workspace = &workspace}));
+  EXPECT_GE(workspace.bytes(), bytes);
+  workspace.clear();
+  EXPECT_EQ(workspace.bytes(), 0u);
 }
 
 TEST_F(poses, none_have_no_answers) { EXPECT_TRUE(collide(a, b, std::span<const PosePair>{}).empty()); }

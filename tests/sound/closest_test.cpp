@@ -6,12 +6,15 @@
 #include <snug/distance.h>
 
 #include <gtest/gtest.h>
+#include <oracle/test_meshes.h>
 #include <testing/contact_trials.h>
+#include <testing/surfaces.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <random>
 #include <vector>
 
 namespace snug::closest_test {
@@ -46,8 +49,10 @@ Point random_point(Trial& trial, Contestants& pair) {
       p[trial.random() % 3] += std::ldexp(unit(trial.random), -static_cast<int>(trial.random() % 45));
       return p;
     }
-    case 2:
-      return {1e6 * unit(trial.random), 1e6 * unit(trial.random), 1e6 * unit(trial.random)};
+    case 2: {
+      const double far = std::pow(10.0, 6 * std::abs(unit(trial.random)));
+      return {far * unit(trial.random), far * unit(trial.random), far * unit(trial.random)};
+    }
     case 3:
       return mesh.points[trial.random() % mesh.points.size()];
     case 4:
@@ -76,7 +81,10 @@ TEST(closest, points_are_the_nearest) {
     const std::uint64_t choice = trial.random() % 6;
     if (choice < 3) options.relative = choice == 0 ? 1e-9 : choice == 1 ? 1e-6 : 1e-2;
     if (choice >= 2 && choice < 5)
-      options.absolute = pair.scaled(size * (choice == 2 ? 1e-3 : choice == 3 ? 1e-6 : 1e-9));
+      options.absolute =
+          pair.scaled(size * (choice == 2   ? 1e-3
+                              : choice == 3 ? std::pow(10.0, -2 - static_cast<double>(trial.random() % 5))
+                                            : 1e-9));
     const snug::Run run{.max_splits = choice == 5 ? 500 : 3000};
     const auto before = std::chrono::steady_clock::now();
     const ClosestPoint answer = closest_point(pair.surface(0), scaled, options, run);
@@ -133,6 +141,25 @@ TEST(closest, points_are_the_nearest) {
       asked, reached, 1e3 * seconds / static_cast<double>(asked), 1e3 * slowest,
       static_cast<unsigned long long>(slowest_trial), open);
   EXPECT_GE(reached * 10, asked * 6);
+}
+
+// Single precision says less of points far away; what was asked for is reached all the same, without many splits.
+TEST(closest, of_points_some_sizes_away_is_as_narrow_as_asked) {
+  std::mt19937_64 random(17);
+  const Surface surface = testing::public_surface(
+      oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 9, 0.2, random));
+  for (int exponent = 0; exponent < 24; ++exponent) {
+    const double far = std::ldexp(surface.size(), exponent) / 2;
+    for (const Point3& way : {Point3{1, 1, 1}, {-1, 0.3, 0.7}, {0, 0, 1}}) {
+      const Point3 to{far * way.x, far * way.y, far * way.z};
+      for (const double share : {0.0, 1e-1, 1e-2, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}) {
+        Precision precision;
+        if (share > 0) precision.absolute = share * surface.size();
+        const ClosestPoint found = closest_point(surface, to, precision, {.max_splits = 400});
+        EXPECT_EQ(found.outcome, Outcome::complete) << exponent << ", " << share;
+      }
+    }
+  }
 }
 
 // Many points at once, in any number of threads: bit for bit what each gives alone.

@@ -302,7 +302,8 @@ Deepest walk_step(const NodeRows& node, std::uint32_t count, const NodeRows& oth
     store(gaps<false>(node.rows, at, row, hn::Zero(d), limit), limit, at, found, near);
   }
   const std::uint32_t places = near.places & ((1u << count) - 1);
-  Deepest result{places, 0, near.others - doubt};
+  // The least of no gaps is not the same on every instruction set.
+  Deepest result{places, 0, places + 1 == 1u << count ? INFINITY : near.others - doubt};
   float least = INFINITY;
   for (std::uint32_t rest = places; rest != 0; rest &= rest - 1) {
     const auto p = static_cast<std::uint32_t>(std::countr_zero(rest));

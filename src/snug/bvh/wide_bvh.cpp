@@ -168,8 +168,14 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) :
 // Splits sets in two, again and again, after a multiple of the sets of a leaf.
 class WideBvh::Builder {
  public:
-  Builder(std::span<const FittedSet> sets, std::span<std::uint32_t> items, std::vector<TreeNode>& nodes)
-      : sets_(sets), items_(items), nodes_(nodes), order_(items.size()), sides_(items.size()) {}
+  Builder(std::span<const FittedSet> sets, std::span<std::uint32_t> items, std::vector<TreeNode>& nodes,
+          const WorkMonitor& monitor)
+      : sets_(sets),
+        items_(items),
+        nodes_(nodes),
+        monitor_(monitor),
+        order_(items.size()),
+        sides_(items.size()) {}
 
   struct Range {
     std::size_t begin, end;
@@ -181,6 +187,7 @@ class WideBvh::Builder {
     }
   };
   [[nodiscard]] Range range(std::size_t begin, std::size_t end) {
+    monitor_.checkpoint();
     const Axes axes = axes_around(sets_, items_.subspan(begin, end - begin));
     std::array<Extent, 3> all;
     for (std::size_t i = begin; i < end; ++i) {
@@ -278,14 +285,15 @@ class WideBvh::Builder {
   std::span<const FittedSet> sets_;
   std::span<std::uint32_t> items_;
   std::vector<TreeNode>& nodes_;
+  const WorkMonitor& monitor_;
   std::vector<std::pair<float, std::uint32_t>> order_;
   std::vector<Sides> sides_;  // of the items, along the axes of the range that they are in
   std::vector<float> left_;
 };
 
-WideBvh::WideBvh(std::span<const FittedSet> sets) : WideBvh(sets.size()) {
+WideBvh::WideBvh(std::span<const FittedSet> sets, const WorkMonitor& monitor) : WideBvh(sets.size()) {
   nodes_.clear();
-  Builder builder(sets, items_, nodes_);
+  Builder builder(sets, items_, nodes_, monitor);
   const Builder::Range whole = builder.range(0, sets.size());
   whole_ = builder.make(whole);
   made_ = std::vector<std::atomic<bool>>(nodes_.size());

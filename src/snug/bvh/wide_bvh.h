@@ -9,6 +9,7 @@
 
 #include <snug/bvh/dop26.h>
 #include <snug/bvh/wide_node.h>
+#include <snug/run.h>
 
 namespace snug {
 
@@ -40,7 +41,7 @@ class WideBvh {
   /// boxes are fitted to the sets below them.
   /// Requires:  at least one set, fewer than 2^31.
   /// Cost:      about a microsecond a set.
-  explicit WideBvh(std::span<const FittedSet> sets);
+  explicit WideBvh(std::span<const FittedSet> sets, const WorkMonitor& monitor = {});
 
   /// A tree made where queries come: from balls around the items down to subtrees of `part_level` levels, 512
   /// items, which are fitted to their leaves as above. `fit` is kept.

@@ -100,8 +100,7 @@ class ClosestSearch {
     if (node.bounded()) {
       monitor_.checkpoint();
       const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
-      gap = std::max(gap, coarse_ ? gap_in_single(node, record)
-                                  : look_at(node, {record.base(node.boxes->origin()), record.radius()}));
+      gap = std::max(gap, gap_of(node, record));
       const bool last = !SurfaceWorkspace::can_open(node);
       if (last && gap < bounds_.prune_distance()) {
         // Single precision is what is left of it.
@@ -135,17 +134,22 @@ class ClosestSearch {
     return true;
   }
 
-  // A lower bound of the distance of a piece, by its quadratic as triangles in single precision; improves the upper one.
-  double gap_in_single(const Node& node, const PieceBounds& record) {
-    if (!(record.radius() < INFINITY)) return 0;
-    const auto [lower, upper, at] = record.distance(to_ - node.boxes->origin());
-    const double doubt = enlarged(record.error() + 2 * spatial_error(point_error_) +
-                                  4 * unit_roundoff * max_abs(to_ - Point3{}));
-    if (upper + doubt < bounds_.upper()) {
-      bounds_.reduce_upper(upper + doubt);
-      nearest_ = OnQuadratic{node, at};
+  // A lower bound of the distance of a piece: by its quadratic in single precision, which improves the upper one, too, unless
+  // roundings are a notable part of the precision, as they are for points far away.
+  double gap_of(const Node& node, const PieceBounds& record) {
+    if (coarse_ && record.radius() < INFINITY) {
+      const auto [lower, upper, at, rounding] = record.distance(to_ - node.boxes->origin());
+      if (8 * rounding <= bounds_.precision()) {
+        const double doubt = enlarged(record.error() + 2 * spatial_error(point_error_) +
+                                      4 * unit_roundoff * max_abs(to_ - Point3{}));
+        if (upper + doubt < bounds_.upper()) {
+          bounds_.reduce_upper(upper + doubt);
+          nearest_ = OnQuadratic{node, at};
+        }
+        return lower - doubt;
+      }
     }
-    return lower - doubt;
+    return look_at(node, {record.base(node.boxes->origin()), record.radius()});
   }
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.

@@ -82,8 +82,9 @@ PieceBounds::QuadraticDistance PieceBounds::distance(const Vector3& point) const
   const double sizes = std::fabs(point.x) + std::fabs(point.y) + std::fabs(point.z) + 2 * upper +
                        8 * static_cast<double>(spread_);
   // 64 roundings to single precision, and what underflows.
-  const double doubt = enlarged(static_cast<double>(flattening_) + 0x1p-18 * sizes) + 0x1p-55;
-  return {lower - doubt, upper + doubt, clamped({at.u, at.v})};
+  const double rounding = enlarged(0x1p-18 * sizes) + 0x1p-55,
+               doubt = enlarged(static_cast<double>(flattening_) + rounding);
+  return {lower - doubt, upper + doubt, clamped({at.u, at.v}), rounding};
 }
 
 // Over the Bezier points of the four parts after a split, those that are no means of others.

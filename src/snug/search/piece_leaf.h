@@ -37,14 +37,15 @@ class PieceBounds {
   [[nodiscard]] double error() const { return static_cast<double>(error_); }
 
   /// Bounds of the distance of a point, relative to the origin, from the quadratic. At the parameter it is no more than the
-  /// upper one. They are 2^-16 of the distance and of the point's and the piece's coordinates apart, and what sixteen flat
-  /// triangles are from the quadratic.
+  /// upper one. They are apart by twice `rounding`, 2^-18 of the point's coordinates, of twice the distance and of sixteen
+  /// times the piece's extent, and by what sixteen flat triangles are from the quadratic.
   /// Requires:  a finite radius; coordinates of the point at most 2^42.
   /// Cost:      50 ns.
   /// Source:    derivations/closest.md.
   struct QuadraticDistance {
     double lower, upper;
     TriangleParameter at;
+    double rounding;  ///< that each of them is off by
   };
   [[nodiscard]] QuadraticDistance distance(const Vector3& point) const;
 

@@ -131,7 +131,7 @@ WideBvh SurfaceBvh::make_tight_tree(const SurfaceBvhOptions& options, const Work
       sets[i] = fitted_set(pieces[i]);
     }
   });
-  WideBvh tree(sets);
+  WideBvh tree(sets, monitor);
   std::array<PieceBuild, WideBvh::leaf_size> of_leaf;
   for (std::size_t i = 0; i < tree.leaf_count(); ++i) {
     const std::span<const std::uint32_t> items = tree.leaf(i);

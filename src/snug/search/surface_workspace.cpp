@@ -48,7 +48,8 @@ void SurfaceWorkspace::Roots::clear() {
 }
 
 std::size_t SurfaceWorkspace::bytes() const {
-  return splits_.size() * sizeof(Split) + patches_.size() * sizeof(Patch) + bytes_of_points_ + roots_.bytes();
+  return splits_.size() * sizeof(Split) + patches_.size() * sizeof(Patch) + bytes_of_points_ +
+         roots_.bytes() + waiting_.capacity() * sizeof(NodeGap);
 }
 
 void SurfaceWorkspace::begin() {

@@ -55,7 +55,12 @@ void Workspace::Pieces::drop_old() {
   std::erase_if(entries_, [&](const auto& item) {
     return item.second.query != query_ && (item.second.surface.expired() || !item.second.pieces);
   });
+  for (const Workspace& other : of_other_threads_) other.pieces().drop_gone();
   std::size_t sum = bytes();
+  if (sum > byte_limit && !of_other_threads_.empty()) {
+    of_other_threads_.clear();
+    sum = bytes();
+  }
   if (sum <= byte_limit) return;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> by_age;  // last query, name
   for (const auto& [name, entry] : entries_) {
@@ -67,6 +72,11 @@ void Workspace::Pieces::drop_old() {
     sum -= entries_[name].pieces->bytes();
     entries_.erase(name);
   }
+}
+
+void Workspace::Pieces::drop_gone() {
+  recent_ = {};
+  std::erase_if(entries_, [](const auto& item) { return item.second.surface.expired(); });
 }
 
 std::size_t Workspace::Pieces::bytes() const {

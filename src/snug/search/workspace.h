@@ -47,6 +47,8 @@ class Workspace::Pieces {
   void begin_query();
   SurfaceWorkspace& find(const Surface& surface, bool second);
   void drop_old();
+  // Entries of surfaces that are gone.
+  void drop_gone();
 
   std::unordered_map<std::uint64_t, Entry> entries_;
   std::array<Recent, 8> recent_{};
@@ -61,7 +63,7 @@ class Workspace::Pieces {
 
 /// The threads of a run, each with a workspace of its own that is kept for the next run.
 [[nodiscard]] inline Workers<Workspace> workers_of(const Run& run) {
-  return {workspace_of(run), run.threads, workspace_of(run).pieces().of_other_threads()};
+  return {workspace_of(run), run.threads, &workspace_of(run).pieces().of_other_threads()};
 }
 
 }  // namespace snug
