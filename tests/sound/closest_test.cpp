@@ -148,14 +148,14 @@ TEST(closest, of_points_some_sizes_away_is_as_narrow_as_asked) {
   std::mt19937_64 random(17);
   const Surface surface = testing::public_surface(
       oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 9, 0.2, random));
-  for (int exponent = 0; exponent < 24; ++exponent) {
-    const double far = std::ldexp(surface.size(), exponent) / 2;
+  for (int exponent = 0; exponent < 96; ++exponent) {
+    const double far = std::exp2(exponent / 4.0) * surface.size() / 2;
     for (const Point3& way : {Point3{1, 1, 1}, {-1, 0.3, 0.7}, {0, 0, 1}}) {
       const Point3 to{far * way.x, far * way.y, far * way.z};
       for (const double share : {0.0, 1e-1, 1e-2, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}) {
         Precision precision;
         if (share > 0) precision.absolute = share * surface.size();
-        const ClosestPoint found = closest_point(surface, to, precision, {.max_splits = 400});
+        const ClosestPoint found = closest_point(surface, to, precision, {.max_splits = 100});
         EXPECT_EQ(found.outcome, Outcome::complete) << exponent << ", " << share;
       }
     }
