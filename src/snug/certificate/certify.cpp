@@ -2,6 +2,7 @@
 
 #include <map>
 #include <set>
+#include <tuple>
 #include <type_traits>
 
 #include <snug/certificate/certificate.h>
@@ -223,7 +224,9 @@ namespace {
 struct PartsInPlace {
   std::array<const SurfaceData*, 2> surfaces;
   std::array<std::array<double, 12>, 2> poses;
-  friend auto operator<=>(const PartsInPlace&, const PartsInPlace&) = default;
+  friend bool operator<(const PartsInPlace& x, const PartsInPlace& y) {
+    return std::tie(x.surfaces, x.poses) < std::tie(y.surfaces, y.poses);
+  }
 };
 
 PartsInPlace in_place(const PlacedSurface& a, const PlacedSurface& b) {
