@@ -63,9 +63,11 @@ const own_bits = (r) => [r.verdict ?? r.outcome, finite(r.distance), r.witness, 
 test("proves what the native library proves, letter by letter", () => {
   const [bracket, pin] = [model("bracket.obj"), model("pin.obj")];
   const proof = join(scratch, "proof.txt");
+  // As the command asks.
+  const of_command = { distance: {}, collide: { measure: true, proveContact: true } };
   for (const [question, move] of [["distance", [0.05, 0.05, 0.5]], ["collide", [0, 0, 0.5]], ["collide", [9, 0, 0]]]) {
     const poseB = snug.pose({ move });
-    const { certificate } = snug[question](bracket, pin, { poseB, certificate: true });
+    const { certificate } = snug[question](bracket, pin, { poseB, certificate: true, ...of_command[question] });
     ask(question, join(models, "bracket.obj"), join(models, "pin.obj"), "--place-b", poseB.join(" "), "--certificate", proof);
     assert.equal(certificate.missing, "");
     assert.equal(certificate.text, readFileSync(proof, "utf8"));
