@@ -56,7 +56,7 @@ Motion random_pose(std::mt19937_64& random, double half_room) {
 
 void bench_queries(const LimitSurface& a, const LimitSurface& b, const Options& options) {
   const SurfaceBvh model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  PieceCache scratch_a(model_a), scratch_b(model_b);
   const double size = std::max(a.size(), b.size());
   const int count = options.size(5000, 200);
   for (const double room : {6.0, 3.0}) {

@@ -86,7 +86,7 @@ class Pair {
   }
 
   Surface a_, b_;
-  SurfaceWorkspace inside_a_, inside_b_;
+  PieceCache inside_a_, inside_b_;
 };
 
 }  // namespace

@@ -134,7 +134,7 @@ void bench_frames(const std::string& name, const ControlMesh& mesh, const Option
 struct QueriedModel {
   explicit QueriedModel(const SurfaceBvh& tree) : model(tree), scratch(tree) {}
   const SurfaceBvh& model;
-  SurfaceWorkspace scratch;
+  PieceCache scratch;
 };
 
 void bench_queries(const std::string& name, const ControlMesh& mesh, const Way& way, const Options& options) {

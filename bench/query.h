@@ -6,7 +6,7 @@
 #include <experiments/rooms.h>
 #include <snug/query/closest.h>
 #include <snug/query/pair_queries.h>
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 
 namespace snug::bench {
 
@@ -29,7 +29,7 @@ class Queries {
 
  private:
   SurfaceBvh a_, b_;
-  SurfaceWorkspace scratch_a_, scratch_b_;
+  PieceCache scratch_a_, scratch_b_;
 };
 
 /// A surface ready for points on one thread.
@@ -42,7 +42,7 @@ class PointQueries {
 
  private:
   SurfaceBvh model_;
-  SurfaceWorkspace scratch_;
+  PieceCache scratch_;
 };
 
 /// Work of queries, in all.

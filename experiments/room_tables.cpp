@@ -13,7 +13,7 @@
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
 #include <snug/query/pair_queries.h>
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 #include <support/contract.h>
 #include <support/error.h>
 
@@ -70,7 +70,7 @@ class QueryPair {
 
  private:
   SurfaceBvh a_, b_;
-  SurfaceWorkspace scratch_a_, scratch_b_;
+  PieceCache scratch_a_, scratch_b_;
 };
 
 }  // namespace

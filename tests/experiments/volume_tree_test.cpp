@@ -137,7 +137,7 @@ TEST(volume_tree, says_what_all_pairs_of_leaves_say_and_what_collide_says) {
                      b = testing::surface_of(oracle::meshes::bipyramid(7));
   const PrintedHierarchy hierarchy_a(a, {tolerance, {}}), hierarchy_b(b, {tolerance, {}});
   const SurfaceBvh model_a(a), model_b(b);
-  SurfaceWorkspace workspace_a(model_a), workspace_b(model_b);
+  PieceCache workspace_a(model_a), workspace_b(model_b);
   std::mt19937_64 random(31);
   int separated = 0, near = 0;
   constexpr int trials = 120;

@@ -17,7 +17,50 @@ TEST(piece_path, remembers_its_digits_and_maps_parameters) {
   EXPECT_EQ(p.v, 0.25);
   PiecePath deep;
   for (unsigned i = 0; i < PiecePath::max_level; ++i) deep = deep.child(i % 4);
-  EXPECT_EQ(deep.digit(59), 3u);
+  for (unsigned i = 0; i < PiecePath::max_level; ++i) EXPECT_EQ(deep.digit(i), i % 4);
+}
+
+// Children, one by one, against the lattice; both ways between parameters.
+TEST(piece_path, counts_in_the_lattice_as_splits_do) {
+  std::mt19937_64 random(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    PiecePath path;
+    std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
+    std::string digits;
+    for (unsigned level = 0; level <= 20; ++level) {
+      EXPECT_EQ(path.level(), level);
+      EXPECT_EQ(path.text(), digits);
+      EXPECT_EQ(path.turned(), corners[1].u < corners[0].u);
+      const PiecePath::Corners lattice = path.corners();
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(static_cast<double>(lattice[k][0]), corners[k].u * path.scale());
+        EXPECT_EQ(static_cast<double>(lattice[k][1]), corners[k].v * path.scale());
+      }
+      const TriangleParameter own{static_cast<double>(random() % 9) / 16,
+                                  static_cast<double>(random() % 7) / 16},
+          whole = to_face(path, own), back = path.local(whole);
+      EXPECT_EQ(whole.u,
+                corners[0].u + own.u * (corners[1].u - corners[0].u) + own.v * (corners[2].u - corners[0].u));
+      EXPECT_EQ(whole.v,
+                corners[0].v + own.u * (corners[1].v - corners[0].v) + own.v * (corners[2].v - corners[0].v));
+      EXPECT_EQ(back.u, own.u);
+      EXPECT_EQ(back.v, own.v);
+      const auto child = static_cast<unsigned>(random() % 4);
+      EXPECT_EQ(path.child(child).parent(), path);
+      EXPECT_EQ(path.child(child).ancestor(level / 2), path.ancestor(level / 2));
+      path = path.child(child);
+      digits += static_cast<char>('0' + child);
+      const auto middle = [&](std::size_t k) {
+        const TriangleParameter a = corners[k], b = corners[(k + 1) % 3];
+        return TriangleParameter{(a.u + b.u) / 2, (a.v + b.v) / 2};
+      };
+      const std::array<TriangleParameter, 3> m{middle(0), middle(1), middle(2)};
+      if (child == 0) corners = {corners[0], m[0], m[2]};
+      if (child == 1) corners = {m[0], corners[1], m[1]};
+      if (child == 2) corners = {m[2], m[1], corners[2]};
+      if (child == 3) corners = {m[1], m[2], m[0]};
+    }
+  }
 }
 
 // A piece's limit points are the whole patch's at the mapped parameters.

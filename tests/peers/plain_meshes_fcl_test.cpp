@@ -17,7 +17,7 @@ namespace {
 struct Body {
   LimitSurface surface;
   SurfaceBvh model;
-  SurfaceWorkspace scratch;
+  PieceCache scratch;
   explicit Body(const ControlMesh& mesh)
       : surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>()), model(surface), scratch(model) {}
   [[nodiscard]] PlacedBvh at(const Motion& pose) { return {model, scratch, pose}; }

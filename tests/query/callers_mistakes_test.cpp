@@ -151,7 +151,7 @@ TEST(callers_mistakes, queries_take_finite_numbers) {
 TEST(callers_mistakes, pairs_of_trees_take_a_workspace_for_each) {
   const LimitSurface surface = surface_of(square(), Scheme::catmark);
   const SurfaceBvh a(surface, {.threads = 1}), b(surface, {.threads = 1});
-  SurfaceWorkspace at_a(a), at_b(b);
+  PieceCache at_a(a), at_b(b);
   expect_refused("one for two", [&] { PairFrames({a, at_a, {}}, {a, at_a, {}}); });
   expect_refused("another's", [&] { PairFrames({a, at_b, {}}, {b, at_a, {}}); });
 }

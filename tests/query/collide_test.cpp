@@ -240,7 +240,7 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
 TEST(collide, planes_between_quadratics_hold_for_directions_of_any_length) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
   const SurfaceBvh &model_a = pair.a.data()->bvh(), &model_b = pair.b.data()->bvh();
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  PieceCache scratch_a(model_a), scratch_b(model_b);
   const PlacedBvh a{model_a, scratch_a, {}}, b{model_b, scratch_b, moved(3, 0.2, 0.1)};
   PairFrames frames(a, b);
   SearchStats stats;
@@ -250,7 +250,7 @@ TEST(collide, planes_between_quadratics_hold_for_directions_of_any_length) {
   while (!pairs.back().bounded()) {
     const NodePair next = pairs.back();
     pairs.pop_back();
-    walk.open(next, walk.opening(next), INFINITY, pairs);
+    walk.open(next, INFINITY, pairs);
   }
   const Vector3 direction{3, 0.2, 0.1};
   const double gap = pieces.gap_along(pairs.back().nodes, direction);

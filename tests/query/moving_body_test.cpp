@@ -50,7 +50,7 @@ TEST(moving_body, knows_the_speed_of_all_that_meets) {
     const Motion turn = random_placement(random, {});
     const Trajectory of_b = turn.with_offset(of_a.start().apply(a.at(i, s)) - turn.apply(b.at(j, s)));
     const SurfaceBvh &model_a = a.surface.data()->bvh(), &model_b = b.surface.data()->bvh();
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    PieceCache scratch_a(model_a), scratch_b(model_b);
     const MovingBvh moving_a{model_a, scratch_a, of_a, a.end}, moving_b{model_b, scratch_b, of_b, b.end};
     MovingBody body_a(moving_a), body_b(moving_b);
     body_a.enter_piece(0);
@@ -85,7 +85,7 @@ TEST(moving_body, knows_the_speed_of_all_points_that_turn_too) {
         trial % 2 ? testing::any_motion(3, random)
                   : Trajectory::screw(from, random_placement(random, random_vector(random, 1)));
     const SurfaceBvh& model = body.surface.data()->bvh();
-    SurfaceWorkspace scratch(model);
+    PieceCache scratch(model);
     const MovingBvh moving{model, scratch, motion, body.end};
     MovingBody bounded(moving);
     bounded.enter_piece(0);
@@ -115,7 +115,7 @@ TEST(moving_body, looks_at_control_points_within_their_rounding) {
       p = Point3{} + std::exp2(static_cast<int>(random() % 20) - 10) * scale * random_vector(random, 1);
     const Surface surface(mesh, {.scheme = Scheme::flat});
     const SurfaceBvh& model = surface.data()->bvh();
-    SurfaceWorkspace scratch(model);
+    PieceCache scratch(model);
     Deformation deformation(model, scratch, end);
     for (const double s : {0.0, 1.0, unit(random), std::nextafter(1.0, 0.0), 0x1p-60}) {
       const Deformation::Shape shape = deformation.at(s);

@@ -28,7 +28,7 @@ TEST(placed_trees, crossings_are_proved_for_all_places_within_the_deviation) {
   const Surface a(testing::box({-1, -1, -1}, {1, 1, 1}, true), {.scheme = Scheme::flat}),
       b(testing::box({0, -0.2, -0.3}, {2, 0.2, 0.3}, true), {.scheme = Scheme::flat});
   const SurfaceBvh &model_a = a.data()->bvh(), &model_b = b.data()->bvh();
-  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  PieceCache scratch_a(model_a), scratch_b(model_b);
   int proved = 0;
   for (int trial = 0; trial < 200; ++trial) {
     // B reaches so deep into A through its side.

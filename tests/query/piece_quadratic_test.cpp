@@ -1,7 +1,6 @@
 #include <snug/query/piece_quadratic.h>
 
 #include <gtest/gtest.h>
-#include <snug/patch/piece_path.h>
 #include <testing/scheme_surfaces.h>
 
 #include <cmath>
@@ -26,14 +25,9 @@ Extended value(const QuadraticTriangle& q, long double u, long double v) {
 
 struct Case {
   QuadraticTriangle near;
-  PiecePlace place;
+  PiecePath path;
   FlatTriangle triangle;
 };
-
-// A parameter of the piece with few digits, as one of the patch.
-TriangleParameter on_patch(const PiecePlace& place, double u, double v) {
-  return {place.corner.u + u / place.scale, place.corner.v + v / place.scale};
-}
 
 // Near or far from the origin, bent or nearly flat; the triangle the whole piece or a part, its corners on the
 // quadratic or off it.
@@ -51,7 +45,7 @@ Case random_case(std::mt19937_64& random) {
   }
   c.near.error = random() % 2 == 0 ? 0 : 0.01 * bend * size;
   for (std::size_t level = random() % 4; level > 0; --level)
-    c.place = c.place.child(static_cast<unsigned>(random() % 4));
+    c.path = c.path.child(static_cast<unsigned>(random() % 4));
   std::array<std::array<double, 2>, 3> local{{{0, 0}, {1, 0}, {0, 1}}};
   if (random() % 2 == 0) {
     for (auto& p : local) {
@@ -61,7 +55,7 @@ Case random_case(std::mt19937_64& random) {
   }
   const double gap = random() % 2 == 0 ? 0 : 0.1 * bend * size;
   for (std::size_t k = 0; k < 3; ++k) {
-    c.triangle.at[k] = on_patch(c.place, local[k][0], local[k][1]);
+    c.triangle.at[k] = to_face(c.path, {local[k][0], local[k][1]});
     const Extended p = value(c.near, local[k][0], local[k][1]);
     for (std::size_t a = 0; a < 3; ++a) c.triangle.corner[k][a] = static_cast<double>(p[a]) + coordinate(gap);
   }
@@ -77,7 +71,7 @@ long double sampled(const Case& c, int steps) {
       std::array<long double, 2> local{};
       for (std::size_t k = 0; k < 3; ++k) {
         const long double weight = k == 0 ? 1 - b - d : k == 1 ? b : d;
-        const TriangleParameter at = c.place.local(c.triangle.at[k]);
+        const TriangleParameter at = c.path.local(c.triangle.at[k]);
         local[0] += weight * at.u;
         local[1] += weight * at.v;
       }
@@ -99,7 +93,7 @@ TEST(piece_quadratic, flatness_bounds_dense_samples) {
   std::vector<double> ratios;
   for (int n = 0; n < 3000; ++n) {
     const Case c = random_case(random);
-    const double bound = PieceQuadratic(c.near, c.place).flatness(c.triangle).error - c.near.error;
+    const double bound = PieceQuadratic(c.near, c.path).flatness(c.triangle).error - c.near.error;
     const long double found = sampled(c, 16);
     ASSERT_GE(bound, static_cast<double>(found) * (1 - 1e-12)) << "case " << n;
     if (found > 1e-10) ratios.push_back(static_cast<double>(bound / found));
@@ -124,28 +118,13 @@ TEST(piece_quadratic, bow_is_the_middle_of_the_chord_less_the_curve) {
   std::mt19937_64 random(42);
   for (int n = 0; n < 300; ++n) {
     const Case c = random_case(random);
-    const PieceQuadratic q(c.near, c.place);
-    const TriangleParameter a = c.place.local(c.triangle.at[0]), b = c.place.local(c.triangle.at[1]);
+    const PieceQuadratic q(c.near, c.path);
+    const TriangleParameter a = c.path.local(c.triangle.at[0]), b = c.path.local(c.triangle.at[1]);
     const Extended p = value(c.near, a.u, a.v), r = value(c.near, b.u, b.v),
                    m = value(c.near, (a.u + b.u) / 2, (a.v + b.v) / 2);
     const Vector3 bow = q.bow(c.triangle.at[0], c.triangle.at[1]);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_NEAR(bow[k], static_cast<double>((p[k] + r[k]) / 2 - m[k]), 1e-14);
-    }
-  }
-}
-
-// As split() and to_face() count pieces.
-TEST(piece_quadratic, places_are_those_of_paths) {
-  for (unsigned a = 0; a < 4; ++a) {
-    for (unsigned b = 0; b < 4; ++b) {
-      const PiecePlace place = PiecePlace{}.child(a).child(b);
-      const PiecePath path = PiecePath{}.child(a).child(b);
-      for (const TriangleParameter p : {TriangleParameter{0, 0}, {1, 0}, {0, 1}, {0.25, 0.5}}) {
-        const TriangleParameter whole = to_face(path, p), back = place.local(whole);
-        EXPECT_EQ(back.u, p.u);
-        EXPECT_EQ(back.v, p.v);
-      }
     }
   }
 }

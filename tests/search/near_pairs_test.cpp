@@ -61,7 +61,7 @@ struct Body {
 
   LimitSurface surface;
   SurfaceBvh model;
-  SurfaceWorkspace workspace;
+  PieceCache workspace;
   std::vector<std::vector<Point3>> points;
 };
 
@@ -100,8 +100,8 @@ TEST(near_pairs, pass_over_no_pair_of_patches_that_is_near) {
     for (NodePair pair; near.next(pair);) {
       ASSERT_TRUE(pair.bounded());
       ASSERT_TRUE(found
-                      .insert({a.workspace.root_of(pair.nodes[0]).value(),
-                               b.workspace.root_of(pair.nodes[1]).value()})
+                      .insert({a.workspace.name(pair.nodes[0]).patch.value(),
+                               b.workspace.name(pair.nodes[1]).patch.value()})
                       .second)
           << "twice";
     }

@@ -19,7 +19,7 @@ using Placed = std::array<long double, 3>;
 struct Body {
   LimitSurface surface;
   SurfaceBvh model;
-  SurfaceWorkspace workspace;
+  PieceCache workspace;
   Motion pose;
 
   Body(const ControlMesh& mesh, const Motion& in_pose)

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 #include <testing/containment.h>
 #include <testing/counts.h>
 #include <testing/disguises.h>
@@ -32,7 +32,7 @@ struct Counts {
 
 void expect_known(const Node& node, const Sample& sample, const Vector3& w, const std::string& name,
                   Counts& counts) {
-  const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+  const PieceBounds& record = PieceCache::bounds_of(node);
   const Point3& origin = node.boxes->origin();
   ++counts.samples;
   if (!std::isfinite(record.radius())) {
@@ -62,7 +62,7 @@ void expect_known(const Node& node, const Sample& sample, const Vector3& w, cons
 // as near as the upper one.
 void expect_distances(const Node& node, const Sample& sample, std::mt19937_64& random,
                       const std::string& name, Counts& counts) {
-  const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+  const PieceBounds& record = PieceCache::bounds_of(node);
   if (!std::isfinite(record.radius())) return;
   const Point3& origin = node.boxes->origin();
   const Extended x = testing::minus(sample.x, testing::extended(origin));
@@ -92,14 +92,14 @@ Vector3 any_direction(std::mt19937_64& random, const Node& node) {
       return {0, random() % 2 == 0 ? length : -length, 0};
     case 1:
       return (random() % 2 == 0 ? length : -length) *
-             unit_normal(SurfaceWorkspace::bounds_of(node).base(node.boxes->origin()));
+             unit_normal(PieceCache::bounds_of(node).base(node.boxes->origin()));
     default:
       return length *
              Vector3{testing::unit(random) - 0.5, testing::unit(random) - 0.5, testing::unit(random) - 0.5};
   }
 }
 
-void expect_piece_known(SurfaceWorkspace& workspace, const Node& node, std::mt19937_64& random,
+void expect_piece_known(PieceCache& workspace, const Node& node, std::mt19937_64& random,
                         const std::string& name, Counts& counts) {
   const Patch& patch = workspace.patch(node);
   ++counts.records;
@@ -122,17 +122,17 @@ void expect_piece_known(SurfaceWorkspace& workspace, const Node& node, std::mt19
 }
 
 // From the root of the tree down to some patch, then so many levels, random children or always towards one corner.
-void walk_down(SurfaceWorkspace& workspace, std::size_t levels, std::mt19937_64& random,
-               const std::string& name, Counts& counts) {
+void walk_down(PieceCache& workspace, std::size_t levels, std::mt19937_64& random, const std::string& name,
+               Counts& counts) {
   Node node = workspace.root();
   const std::size_t towards = random() % 8;
   for (std::size_t level = 0; !::testing::Test::HasFailure();) {
     if (node.bounded()) {
       expect_piece_known(workspace, node, random, name, counts);
-      if (level++ == levels || !SurfaceWorkspace::can_open(node)) return;
+      if (level++ == levels || !PieceCache::can_open(node)) return;
     }
     const bool piece = node.bounded();
-    const SurfaceWorkspace::Opened opened = workspace.open(node);
+    const PieceCache::Opened opened = workspace.open(node);
     node = opened.child(piece && towards < 3 ? towards : random() % opened.count());
   }
 }
@@ -146,7 +146,7 @@ TEST(piece_record, holds_limit_points_of_every_kind) {
     if (patches == 0) return;
     for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
       const SurfaceBvh model(named.surface, {.method = method, .tight = random() % 2 == 0, .threads = 1});
-      SurfaceWorkspace workspace(model);
+      PieceCache workspace(model);
       workspace.begin();
       for (int walk = 0; walk < 3; ++walk) {
         walk_down(workspace, random() % 8 == 0 ? 20 : random() % 6, random, named.name, counts);
@@ -179,7 +179,7 @@ std::optional<TriangleParameter> in_child(TriangleParameter p, std::size_t child
 }
 
 // All samples of the twin in all pieces that hold them.
-void expect_samples_known(SurfaceWorkspace& workspace, const Node& node, const std::vector<Sample>& samples,
+void expect_samples_known(PieceCache& workspace, const Node& node, const std::vector<Sample>& samples,
                           unsigned levels, std::mt19937_64& random, const std::string& name, Counts& counts) {
   if (samples.empty()) return;
   ++counts.records;
@@ -189,8 +189,8 @@ void expect_samples_known(SurfaceWorkspace& workspace, const Node& node, const s
     expect_distances(node, sample, random, name, counts);
     if (::testing::Test::HasFatalFailure()) return;
   }
-  if (levels == 0 || !SurfaceWorkspace::can_open(node)) return;
-  const SurfaceWorkspace::Opened opened = workspace.open(node);
+  if (levels == 0 || !PieceCache::can_open(node)) return;
+  const PieceCache::Opened opened = workspace.open(node);
   for (std::size_t child = 0; child < 4; ++child) {
     std::vector<Sample> inside;
     for (const Sample& sample : samples) {
@@ -221,7 +221,7 @@ void expect_twin_known(const testing::TaggedCase& c, const std::shared_ptr<Bound
   }
   if (std::ranges::all_of(samples, [](const auto& some) { return some.empty(); })) return;
   const SurfaceBvh model(surface, {.tight = random() % 2 == 0, .threads = 1});
-  SurfaceWorkspace workspace(model);
+  PieceCache workspace(model);
   workspace.begin();
   std::vector<Node> nodes{workspace.root()};
   while (!nodes.empty() && !::testing::Test::HasFailure()) {
@@ -229,11 +229,11 @@ void expect_twin_known(const testing::TaggedCase& c, const std::shared_ptr<Bound
     nodes.pop_back();
     if (node.bounded()) {
       if (random() % 4 != 0) continue;
-      expect_samples_known(workspace, node, samples[workspace.root_of(node).index()], levels, random,
+      expect_samples_known(workspace, node, samples[workspace.name(node).patch.index()], levels, random,
                            c.name + ", " + testing::text_of(c.rules), counts);
       continue;
     }
-    const SurfaceWorkspace::Opened opened = workspace.open(node);
+    const PieceCache::Opened opened = workspace.open(node);
     for (std::size_t i = 0; i < opened.count(); ++i) nodes.push_back(opened.child(i));
   }
 }

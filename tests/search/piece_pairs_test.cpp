@@ -15,7 +15,7 @@ namespace {
 // A surface in a pose, beside itself.
 struct Placed {
   SurfaceBvh model;
-  SurfaceWorkspace workspace, beside;
+  PieceCache workspace, beside;
   PairFrames frames;
   SearchStats stats;
   PiecePairs pieces{frames, stats};
@@ -34,12 +34,12 @@ bool has_patches(const LimitSurface& surface) {
 }
 
 // A patch or a piece some levels down.
-Node some_node(SurfaceWorkspace& workspace, std::mt19937_64& random) {
+Node some_node(PieceCache& workspace, std::mt19937_64& random) {
   Node node = workspace.root();
   for (std::size_t levels = random() % 4; !node.bounded() || levels > 0;) {
-    if (!SurfaceWorkspace::can_open(node)) break;
+    if (!PieceCache::can_open(node)) break;
     levels -= node.bounded();
-    const SurfaceWorkspace::Opened opened = workspace.open(node);
+    const PieceCache::Opened opened = workspace.open(node);
     node = opened.child(random() % opened.count());
   }
   return node;
@@ -51,7 +51,7 @@ using Points = std::array<std::vector<Point3>, 2>;
 Points points_of(Placed& at, const std::array<Node, 2>& nodes, std::mt19937_64& random) {
   Points points;
   for (std::size_t s = 0; s < 2; ++s) {
-    const Patch& patch = at.frames.workspace(s).patch(nodes[s]);
+    const Patch& patch = at.frames.cache(s).patch(nodes[s]);
     std::vector<TriangleParameter> parameters{{0, 0}, {1, 0}, {0, 1}};
     while (parameters.size() < 12) parameters.push_back(testing::random_parameter(random));
     for (const TriangleParameter& parameter : parameters) {

@@ -1,4 +1,4 @@
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 
 #include <gtest/gtest.h>
 #include <snug/bounds/table_triangle.h>
@@ -26,14 +26,14 @@ TEST(piece, by_tables_has_the_offset_triangles_of_the_tables) {
 }
 
 // The box of a patch, from the root of the tree down.
-Node node_of(SurfaceWorkspace& workspace, PatchId patch) {
+Node node_of(PieceCache& workspace, PatchId patch) {
   std::vector<Node> nodes{workspace.root()};
   while (!nodes.empty()) {
     const Node node = nodes.back();
     nodes.pop_back();
-    if (node.bounded() && workspace.root_of(node) == patch) return node;
+    if (node.bounded() && workspace.name(node).patch == patch) return node;
     if (node.bounded()) continue;
-    const SurfaceWorkspace::Opened opened = workspace.open(node);
+    const PieceCache::Opened opened = workspace.open(node);
     for (std::size_t i = 0; i < opened.count(); ++i) nodes.push_back(opened.child(i));
   }
   throw std::logic_error("no such patch");
@@ -42,7 +42,7 @@ Node node_of(SurfaceWorkspace& workspace, PatchId patch) {
 TEST(workspace, opens_to_the_same_pieces_in_any_order) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   const SurfaceBvh model(surface);
-  SurfaceWorkspace first(model), second(model);
+  PieceCache first(model), second(model);
   static_cast<void>(first.open(node_of(first, PatchId(3))));
   const Node root = node_of(first, PatchId(0));
   const auto a = first.open(root), b = second.open(node_of(second, PatchId(0)));
@@ -52,7 +52,7 @@ TEST(workspace, opens_to_the_same_pieces_in_any_order) {
     const Node x = a.child(child), y = b.child(child);
     EXPECT_EQ(first.patch(x).path, second.patch(y).path);
     EXPECT_EQ(x.boxes->origin(), y.boxes->origin());
-    const PieceBounds &of_x = SurfaceWorkspace::bounds_of(x), &of_y = SurfaceWorkspace::bounds_of(y);
+    const PieceBounds &of_x = PieceCache::bounds_of(x), &of_y = PieceCache::bounds_of(y);
     EXPECT_EQ(of_x.radius(), of_y.radius());
     EXPECT_EQ(of_x.error(), of_y.error());
     EXPECT_EQ(of_x.base(x.boxes->origin()), of_y.base(y.boxes->origin()));

@@ -110,8 +110,8 @@ double stretch_at(const LimitSurface& surface, const LevelVertex& vertex, unsign
   if (!star.fan) return INFINITY;
   std::vector<Patch> patches;
   for (const auto& sector : star.sectors) {
-    patches.push_back(surface.patch(PatchId(sector.piece.patch)));
-    const PiecePath path = sector.piece.path();
+    patches.push_back(surface.patch(sector.piece.patch));
+    const PiecePath& path = sector.piece.path;
     for (unsigned k = 0; k < path.level(); ++k) patches.back() = split(patches.back(), path.digit(k));
   }
   std::vector<StarSector> sectors;
@@ -203,7 +203,7 @@ TEST(star_distortion, of_what_turns_over_is_infinite) {
         const LevelStar star = complex.star(vertex, complex.level_of(piece));
         bool left = false, right = false;
         for (const auto& sector : star.sectors) {
-          const Patch patch = surface.patch(PatchId(sector.piece.patch));
+          const Patch patch = surface.patch(sector.piece.patch);
           for (const double u : {0.1, 0.4, 0.7}) {
             for (const double v : {0.1, 0.2}) {
               const LimitFrame frame = limit_frame(patch, {u, v});

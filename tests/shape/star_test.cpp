@@ -53,14 +53,14 @@ struct CentreStar {
 };
 CentreStar star_at_centre(const LimitSurface& surface, unsigned level) {
   const LevelComplex complex(surface);
-  PieceName piece{0};
+  PieceName piece{PatchId(0), {}};
   for (unsigned k = 0; k < level; ++k) piece = piece.child(0);
   const LevelStar star = complex.star(complex.vertices(piece)[0], level);
   EXPECT_TRUE(star.fan);
   CentreStar result;
   for (const auto& sector : star.sectors) {
-    result.patches.push_back(surface.patch(PatchId(sector.piece.patch)));
-    const PiecePath path = sector.piece.path();
+    result.patches.push_back(surface.patch(sector.piece.patch));
+    const PiecePath& path = sector.piece.path;
     for (unsigned k = 0; k < path.level(); ++k) {
       result.patches.back() = split(result.patches.back(), path.digit(k));
     }
@@ -437,10 +437,10 @@ bool proved_of_bilinear_quads(const oracle::TaggedMesh& mesh) {
   const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
   const LevelComplex complex(surface);
   const std::size_t corner = mesh.polygons[0][0] == 0 ? 0 : 1;
-  const LevelStar star = complex.star(complex.vertices(PieceName{0})[corner], 0);
+  const LevelStar star = complex.star(complex.vertices(PieceName{PatchId(0), {}})[corner], 0);
   EXPECT_TRUE(star.fan);
   std::vector<Patch> patches;
-  for (const auto& sector : star.sectors) patches.push_back(surface.patch(PatchId(sector.piece.patch)));
+  for (const auto& sector : star.sectors) patches.push_back(surface.patch(sector.piece.patch));
   std::vector<StarSector> sectors;
   for (std::size_t s = 0; s < patches.size(); ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
   return certainly_injective(sectors, star.closed);

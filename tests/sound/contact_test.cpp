@@ -378,7 +378,7 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
     for (std::size_t side = 0; side < 2; ++side) {
       oracle::ContactSurface& twin = trial.pair->twin(side);
       const SurfaceBvh& model = trial.pair->surface(side).data()->bvh();
-      SurfaceWorkspace scratch(model);
+      PieceCache scratch(model);
       const std::uint64_t faces = model.surface().face_count();
       for (int k = 0; k < 8; ++k) {
         // Up to a hair from the surface, along a ray from the origin through a limit point.

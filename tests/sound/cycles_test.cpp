@@ -167,7 +167,7 @@ TEST(cycles, of_smooth_schemes_wind_as_refined_meshes_do) {
       const LimitSurface surface(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>());
       ASSERT_TRUE(is_closed(surface)) << c.name << *open_reason(surface);
       const SurfaceBvh model(surface, {.threads = 1});
-      SurfaceWorkspace scratch(model);
+      PieceCache scratch(model);
       const std::vector<Triangle> cut = cut_triangles(surface);
       not_manifold += !surface.topology().is_manifold();
       cuts += !cut.empty();
@@ -222,7 +222,7 @@ TEST(cycles, of_facets_wind_as_exact_polyhedra_do) {
       const LimitSurface surface(testing::control_mesh(mesh, {}), {scheme}, std::make_shared<BoundsCache>());
       ASSERT_TRUE(is_closed(surface)) << i;
       const SurfaceBvh model(surface, {.threads = 1});
-      SurfaceWorkspace scratch(model);
+      PieceCache scratch(model);
       for (int k = 0; k < 40; ++k) {
         Point3 q;
         for (std::size_t x = 0; x < 3; ++x) {

@@ -60,7 +60,7 @@ TEST(lazy_trees, give_true_answers) {
         .method = how.bounds, .tight = how.tight, .threads = 1, .min_lazy = 0, .part_level = how.part_level};
     const SurfaceBvh model_a(pair.surface(0).data()->limit(), lazy),
         model_b(pair.surface(1).data()->limit(), lazy);
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    PieceCache scratch_a(model_a), scratch_b(model_b);
     const PlacedBvh a{model_a, scratch_a, pair.scaled(trial.a)}, b{model_b, scratch_b, pair.scaled(trial.b)};
     const PlacedSurface whole_a = pair.placed(0, trial.a), whole_b = pair.placed(1, trial.b);
     const CollideOptions options{.tolerance = pair.scaled(trial.tolerance),

@@ -126,7 +126,7 @@ void check(const Body& a, const Body& b, const Motion& place_a, const Motion& pl
   const double slack = 2 * (a.error + b.error) + rounding;
   const double upper = nearest_pair(on_a, on_b) + slack;
   const double lower = upper - 2 * slack - a.spacing - b.spacing;
-  SurfaceWorkspace scratch_a(a.model), scratch_b(b.model);
+  PieceCache scratch_a(a.model), scratch_b(b.model);
   const double tolerance = 1e-3 * size;
   const Collision answer = collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b},
                                    testing::verdict_only(tolerance, 0));
@@ -152,7 +152,7 @@ void check_with_itself(const Body& a, const Body& smaller, std::map<std::string,
   const double size = a.surface.size();
   for (const double hair : {0.0, 1e-15, 1e-9, 1e-4}) {
     const Motion place = Motion::translation({hair * size, 0, 0});
-    SurfaceWorkspace scratch(a.model), other(a.model);
+    PieceCache scratch(a.model), other(a.model);
     const Collision answer =
         collide({a.model, scratch, {}}, {a.model, other, place}, testing::verdict_only(1e-3 * size, 0));
     ++counts[name_of(answer.verdict)];
@@ -233,7 +233,7 @@ TEST(collide, separates_nested_shells_of_every_scheme) {
     const LimitSurface a(testing::control_mesh(outer), {scheme}, library),
         b(testing::control_mesh(inner), {scheme}, library);
     const SurfaceBvh model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
-    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    PieceCache scratch_a(model_a), scratch_b(model_b);
     const Collision answer =
         collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, testing::verdict_only(1e-4, 0));
     EXPECT_EQ(answer.verdict, Verdict::separated) << name_of(scheme);

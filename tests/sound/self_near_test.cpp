@@ -212,7 +212,7 @@ TEST(self_near, of_wedges_hangs_on_the_stretch_of_their_edge) {
                                std::make_shared<BoundsCache>());
     const double tolerance = surface.scale().apply(0.06);
     const Nearness found =
-        find_nearness(surface, LevelComplex(surface),
+        find_nearness(SurfaceBvh(surface), LevelComplex(surface),
                       {.tolerance = tolerance, .radius = 4 * tolerance, .budget = 100'000, .levels = 12}, {});
     EXPECT_EQ(found.near.empty() && found.unresolved.empty(), std::sin(half) > 0.25) << degrees;
   }

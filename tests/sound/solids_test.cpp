@@ -176,7 +176,7 @@ class Trials {
   oracle::WindingTwin twin_;
   Surface surface_;
   const SurfaceBvh& model_;
-  SurfaceWorkspace scratch_;
+  PieceCache scratch_;
 };
 
 TEST(solids, winding_numbers_are_those_of_refined_meshes) {

@@ -25,34 +25,6 @@ std::vector<PieceName> next_level(const std::vector<PieceName>& pieces) {
   return next;
 }
 
-TEST(level_complex, pieces_are_children_of_their_parents) {
-  std::mt19937_64 random(1);
-  PieceName piece{7};
-  for (int trial = 0; trial < 200; ++trial) {
-    std::vector<unsigned> digits;
-    PieceName at = piece;
-    for (int k = 0; k < 10; ++k) {
-      const auto digit = static_cast<unsigned>(random() % 4);
-      const PieceName child = at.child(digit);
-      EXPECT_EQ(child.parent(), at);
-      EXPECT_EQ(child.digit(), digit);
-      digits.push_back(digit);
-      at = child;
-    }
-    const PiecePath path = at.path();
-    ASSERT_EQ(path.level(), 10U);
-    for (unsigned k = 0; k < 10; ++k) EXPECT_EQ(path.digit(k), digits[k]);
-    // Corners are where the path leads.
-    const auto corners = at.corners();
-    const std::array<TriangleParameter, 3> own{{{0, 0}, {1, 0}, {0, 1}}};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const TriangleParameter there = to_face(path, own[k]);
-      EXPECT_EQ(there.u * 1024, corners[k][0]);
-      EXPECT_EQ(there.v * 1024, corners[k][1]);
-    }
-  }
-}
-
 void expect_complex(const LimitSurface& surface, const std::string& name) {
   const LevelComplex complex(surface);
   std::vector<PieceName> pieces = complex.pieces();
@@ -62,8 +34,8 @@ void expect_complex(const LimitSurface& surface, const std::string& name) {
     std::map<LevelVertex, std::size_t> counts;
     for (const PieceName& piece : pieces) {
       ASSERT_EQ(complex.level_of(piece), level) << name;
-      Patch patch = surface.patch(PatchId(piece.patch));
-      const PiecePath path = piece.path();
+      Patch patch = surface.patch(piece.patch);
+      const PiecePath& path = piece.path;
       for (unsigned k = 0; k < path.level(); ++k) patch = split(patch, path.digit(k));
       const auto limits = limit_corners(patch);
       const auto vertices = complex.vertices(piece);

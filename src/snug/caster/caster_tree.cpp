@@ -7,6 +7,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/piece_path.h>
+#include <snug/search/feet.h>
 #include <snug/search/ray_scale.h>
 #include <snug/surface/evaluate.h>
 #include <support/direction.h>
@@ -26,11 +27,10 @@ constexpr double widest_beam = 0.1;
 // Where single precision alone, of coordinates up to about 2, moves a triangle.
 constexpr double single_error = 0x1p-21;
 
-Box3 box_of(const QuadraticPiece& piece) {
+Box3 box_of(const QuadraticTriangle& q) {
   Box3 box;
-  for (const Point3& p : piece.quadratic.corners) box.add(p);
-  for (const Point3& p : piece.quadratic.middles) box.add(p);
-  const double wider = 2 * piece.quadratic.error + single_error;
+  for (const Point3& p : points_of(q)) box.add(p);
+  const double wider = 2 * q.error + single_error;
   const Vector3 by{wider, wider, wider};
   return {box.lower - by, box.upper + by};
 }
@@ -43,29 +43,29 @@ Box3 merged(const Box3& a, const Box3& b) {
 
 }  // namespace
 
-CasterTree::Places::Places(std::span<const QuadraticPiece> pieces) {
+CasterTree::Places::Places(const PieceSet& pieces) {
   std::uint32_t last = 0;
   unsigned deepest = 0;
-  for (const QuadraticPiece& piece : pieces) {
-    last = std::max(last, piece.root.value());
-    deepest = std::max(deepest, piece.path.level());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    last = std::max(last, pieces.name(i).patch.value());
+    deepest = std::max(deepest, pieces.name(i).path.level());
   }
   root_bits_ = static_cast<unsigned>(std::bit_width(last));
   wide_ = root_bits_ + bits_of_level + 2 * std::min(deepest, max_digits) > 32;
 }
 
-void CasterTree::Places::add(const QuadraticPiece& piece) {
+void CasterTree::Places::add(const PieceName& piece) {
   const unsigned level = std::min(piece.path.level(), max_digits);
   std::uint64_t place = 0;
   for (unsigned d = level; d-- > 0;) place = place << 2 | piece.path.digit(d);
-  place = (place << bits_of_level | level) << root_bits_ | piece.root.value();
+  place = (place << bits_of_level | level) << root_bits_ | piece.patch.value();
   words_.push_back(static_cast<std::uint32_t>(place));
   if (wide_) words_.push_back(static_cast<std::uint32_t>(place >> 32));
 }
 
-CasterTree::Places::Place CasterTree::Places::operator[](std::size_t i) const {
+PieceName CasterTree::Places::operator[](std::size_t i) const {
   std::uint64_t place = wide_ ? words_[2 * i] | std::uint64_t{words_[2 * i + 1]} << 32 : words_[i];
-  Place result{PatchId(place & ((std::uint64_t{1} << root_bits_) - 1)), {}};
+  PieceName result{PatchId(place & ((std::uint64_t{1} << root_bits_) - 1)), {}};
   place >>= root_bits_;
   const unsigned level = place & ((1u << bits_of_level) - 1);
   for (place >>= bits_of_level; result.path.level() < level; place >>= 2) {
@@ -77,7 +77,7 @@ CasterTree::Places::Place CasterTree::Places::operator[](std::size_t i) const {
 // A tree by medians: eight ranges a node, whole blocks each, cut across the longest side of their centres.
 struct CasterTree::Builder {
   CasterTree& tree;
-  std::span<const QuadraticPiece> pieces;
+  const PieceSet& pieces;
   std::vector<Box3> boxes;
   std::vector<std::uint32_t> order;
 
@@ -146,7 +146,7 @@ struct CasterTree::Builder {
     Box3 all, points;
     double error = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const QuadraticTriangle& quadratic = pieces[order[i]].quadratic;
+      const QuadraticTriangle& quadratic = pieces[order[i]];
       for (std::size_t k = 0; k < 3; ++k) {
         points.add(quadratic.corners[k]);
         points.add(quadratic.middles[k]);
@@ -161,16 +161,17 @@ struct CasterTree::Builder {
     block.error = static_cast<float>(widening * error + static_cast<double>(block.step) + single_error);
     block.taken = (1u << (end - begin)) - 1;
     for (std::size_t l = 0; l < caster_width; ++l) {
-      const QuadraticPiece& piece = pieces[order[std::min(begin + l, end - 1)]];
+      const std::uint32_t piece = order[std::min(begin + l, end - 1)];
+      const std::array<Point3, 6> net = points_of(pieces[piece]);
       for (std::size_t k = 0; k < 6; ++k) {
-        const Point3& p = k < 3 ? piece.quadratic.corners[k] : piece.quadratic.middles[k - 3];
+        const Point3& p = net[k];
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const double from = p[axis] - static_cast<double>(block.origin[axis]);
           block.net[k][axis][l] = static_cast<std::int16_t>(
               std::clamp(std::nearbyint(from / static_cast<double>(block.step)), -32767.0, 32767.0));
         }
       }
-      tree.places_.add(piece);
+      tree.places_.add(pieces.name(piece));
     }
     tree.blocks_.push_back(block);
     return all;
@@ -179,14 +180,13 @@ struct CasterTree::Builder {
 
 CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int threads, const WorkMonitor& monitor)
     : surface_(&surface) {
-  const std::vector<QuadraticPiece> pieces =
-      quadratic_pieces(surface, tolerance / (1 + widening), threads, monitor);
+  const PieceSet pieces(surface, tolerance / (1 + widening), threads, monitor);
   places_ = Places(pieces);
   Builder builder{*this, pieces, {}, {}};
   builder.boxes.reserve(pieces.size());
   Box3 all;
-  for (const QuadraticPiece& piece : pieces) {
-    builder.boxes.push_back(box_of(piece));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    builder.boxes.push_back(box_of(pieces[i]));
     builder.order.push_back(static_cast<std::uint32_t>(builder.order.size()));
     all.add(builder.boxes.back());
   }
@@ -419,12 +419,12 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const 
 
 QuickHit CasterTree::finished(const Approach& approach, std::uint32_t block,
                               const kernels::CasterHit& hit) const {
-  const Places::Place place = places_[block * caster_width + hit.place];
+  const PieceName place = places_[block * caster_width + hit.place];
   const TriangleParameter at{static_cast<double>(hit.u), static_cast<double>(hit.v)};
   QuickHit answer;
   answer.t = approach.lengths.to_parameter(static_cast<double>(hit.t) + approach.skipped);
-  answer.at = place_of(*surface_, place.root, to_face(place.path, at));
-  answer.patch = surface_->place(place.root);
+  answer.at = place_of(*surface_, place, at);
+  answer.patch = surface_->place(place.patch);
   answer.level = place.path.level();
   // Of the quadratic.
   const auto& net = blocks_[block].net;

@@ -8,8 +8,8 @@
 
 #include <snug/caster/caster_kernels.h>
 #include <snug/ray.h>
+#include <snug/search/piece_set.h>
 #include <snug/surface/limit_surface.h>
-#include <snug/surface/quadratic_pieces.h>
 
 namespace snug {
 
@@ -38,15 +38,12 @@ class CasterTree {
   /// Which pieces of which patches there are: 4 bytes each where few and shallow, else 8.
   class Places {
    public:
-    struct Place {
-      PatchId root;
-      PiecePath path;  ///< its first 14 digits
-    };
     Places() = default;
-    explicit Places(std::span<const QuadraticPiece> pieces);  ///< none yet, but room for each of these
-    void add(const QuadraticPiece& piece);
+    explicit Places(const PieceSet& pieces);  ///< none yet, but room for each of these
+    void add(const PieceName& piece);
     void shrink_to_fit() { words_.shrink_to_fit(); }
-    [[nodiscard]] Place operator[](std::size_t i) const;
+    /// The piece, or that of level 14 which holds it.
+    [[nodiscard]] PieceName operator[](std::size_t i) const;
     [[nodiscard]] std::size_t bytes() const { return words_.capacity() * sizeof(std::uint32_t); }
 
    private:

@@ -10,8 +10,8 @@
 
 #include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
-#include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/gap.h>
 #include <snug/search/point_batch.h>
 #include <snug/search/precision.h>
 #include <snug/search/winding.h>
@@ -19,7 +19,6 @@
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/error.h>
-#include <support/ordering.h>
 #include <support/run.h>
 
 namespace snug {
@@ -50,9 +49,9 @@ struct QueryPoint {
 
 class ClosestSearch {
  public:
-  ClosestSearch(SurfaceWorkspace& workspace, const QueryPoint& to, const Precision& options, const Run& run)
-      : workspace_(workspace),
-        surface_(workspace.model().surface()),
+  ClosestSearch(PieceCache& cache, const QueryPoint& to, const Precision& options, const Run& run)
+      : cache_(cache),
+        surface_(cache.model().surface()),
         to_(to.at),
         point_error_(to.error),
         options_(options),
@@ -63,77 +62,54 @@ class ClosestSearch {
         coarse_(surface_.scale().apply(*options.absolute) > 0x1p-16 * (4 + max_abs(to_ - Point3{}))) {}
 
   ClosestPoint run() {
-    workspace_.begin();
-    make_room();
-    add({workspace_.root(), 0});
-    while (waiting_ > 0) {
-      const NodeGap nearest = take_next();
-      const double gap = static_cast<double>(nearest.gap);
-      if (gap >= bounds_.prune_distance()) {
-        bounds_.prune(gap);
-      } else if (!visit(nearest.node, gap)) {
-        bounds_.prune(gap);
-        break;
-      }
-    }
-    for (std::size_t i = 0; i < waiting_; ++i) bounds_.prune(static_cast<double>(open_[i].gap));
+    cache_.begin();
+    // The nearest of all first takes longer for each, and has fewer pieces to split.
+    open_.start(coarse_ ? Order::last_first : Order::nearest_first, {cache_.root(), 0});
+    search(open_, *this);
+    open_.for_each([&](const NodeGap& at) { bounds_.prune(static_cast<double>(at.gap)); });
     return result();
   }
 
- private:
-  // What waits: depth first, or the nearest of all first, which takes longer for each and has fewer pieces to split.
-  void make_room() {
-    if (open_.size() < waiting_ + WideNode::width) open_.resize(2 * (waiting_ + WideNode::width));
-  }
-  void add(const NodeGap& node) {
-    open_[waiting_++] = node;
-    if (!coarse_) ordering::push_heap(open_.data(), waiting_, farther);
-  }
-  NodeGap take_next() {
-    if (!coarse_) ordering::pop_heap(open_.data(), waiting_, farther);
-    return open_[--waiting_];
-  }
-  static bool farther(const NodeGap& x, const NodeGap& y) { return x.gap > y.gap; }
-
-  // False when the budget ends.
-  bool visit(const Node& node, double gap) {
-    if (node.bounded()) {
+  Verb look_at(const NodeGap& at) {
+    gap_ = static_cast<double>(at.gap);
+    const bool bounded = at.node.bounded();
+    const bool last = bounded && !PieceCache::can_open(at.node);
+    if (bounded && gap_ < bounds_.prune_distance()) {
       monitor_.checkpoint();
-      const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
-      gap = std::max(gap, gap_of(node, record));
-      const bool last = !SurfaceWorkspace::can_open(node);
-      if (last && gap < bounds_.prune_distance()) {
-        // Single precision is what is left of it.
-        gap = std::max(gap, look_at(node, workspace_.piece(node).offset));
-      }
-      if (gap >= bounds_.prune_distance() || last) {
-        bounds_.prune(gap);
-        return true;
+      gap_ = std::max(gap_, gap_of(at.node, PieceCache::bounds_of(at.node)));
+      // Single precision is what is left of it.
+      if (last && gap_ < bounds_.prune_distance()) {
+        gap_ = std::max(gap_, look_at(at.node, cache_.piece(at.node).offset));
       }
     }
-    if (splits_ >= max_splits_ || workspace_.full()) {
-      budget_spent_ = splits_ >= max_splits_;
-      return false;
+    if (last || gap_ >= bounds_.prune_distance()) {
+      bounds_.prune(gap_);
+      return Verb::drop;
     }
-    splits_ += node.bounded();
-    const SurfaceWorkspace::Opened opened = workspace_.open(node);
+    if (splits_ < max_splits_ && !cache_.full()) return Verb::open;
+    budget_spent_ = splits_ >= max_splits_;
+    bounds_.prune(static_cast<double>(at.gap));
+    return Verb::stop;
+  }
+  void open(const NodeGap& at) {
+    splits_ += at.node.bounded();
+    const PieceCache::Opened opened = cache_.open(at.node);
     WideNode::Distances gaps;
     const auto most = static_cast<float>(bounds_.prune_distance());
     const WideNode::Near near = opened.boxes->distances(to_, point_error_, most, gaps);
     bounds_.prune(static_cast<double>(near.others));
-    const float parent = std::max(single_down(gap), 0.0F);
-    if (near.places == 0) return true;
-    make_room();
+    const float parent = std::max(single_down(gap_), 0.0F);
+    if (near.places == 0) return;
     auto nearest = static_cast<std::size_t>(std::countr_zero(near.places));
     for (std::uint32_t rest = near.places & (near.places - 1); rest != 0; rest &= rest - 1) {
       auto place = static_cast<std::size_t>(std::countr_zero(rest));
       if (gaps[place] < gaps[nearest]) std::swap(place, nearest);
-      add({opened.child(place), std::max(gaps[place], parent)});
+      open_.add({opened.child(place), std::max(gaps[place], parent)});
     }
-    add({opened.child(nearest), std::max(gaps[nearest], parent)});
-    return true;
+    open_.add({opened.child(nearest), std::max(gaps[nearest], parent)});
   }
 
+ private:
   // A lower bound of the distance of a piece: by its quadratic in single precision, which improves the upper one, too, unless
   // roundings are a notable part of the precision, as they are for points far away.
   double gap_of(const Node& node, const PieceBounds& record) {
@@ -155,7 +131,7 @@ class ClosestSearch {
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
   double look_at(const Node& node, const OffsetTriangle& offset) {
     const NearestTriangles near = nearest({to_, to_, to_}, offset.base);
-    double gap = rounded_down(near.certain_distance - enlarged(offset.radius + spatial_error(point_error_)));
+    double gap = snug::gap_of(near, offset.radius, spatial_error(point_error_));
     if (near.certain_distance < bounds_.upper()) {
       take(node, clamped(near.on_b));
     }
@@ -166,28 +142,23 @@ class ClosestSearch {
 
   // The limit point at a parameter, if none as near is known.
   void take(const Node& node, TriangleParameter at) {
-    const Patch& patch = workspace_.patch(node);
+    const Patch& patch = cache_.patch(node);
     const BoundedPoint found = limit_point(patch, at).from(patch.origin);
-    const Vector3 between = found.position - to_;
-    // Not enlarged(): of a point far away that would be more than all else.
-    const double upper = (std::sqrt(length_sq(between) + 8 * underflow_error) +
-                          spatial_error(found.error + point_error_) + 8 * unit_roundoff * max_abs(between)) *
-                         (1 + 16 * unit_roundoff);
+    const double upper = distance_at_most(found.position - to_, spatial_error(found.error + point_error_));
     if (!(upper < closest_distance_)) return;
     closest_distance_ = upper;
     bounds_.reduce_upper(upper);
     closest_ = found;
-    at_ = place_of(surface_, workspace_.root_of(node), to_face(patch.path, at));
+    at_ = place_of(surface_, cache_.name(node), at);
   }
 
   [[nodiscard]] double plane_gap(const Node& node, const Vector3& direction) {
     const Vector3 w = normalized(direction);
     if (w == Vector3{}) return 0;
-    const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+    const PieceBounds& record = PieceCache::bounds_of(node);
     const Vector3 from = node.boxes->origin() - to_;
-    const double gap = dot(w, from) - record.extent(-w) - enlarged(record.error());
-    // |w| is 1 up to 5 roundings.
-    return gap * (1 - 16 * unit_roundoff) - 16 * unit_roundoff * max_abs(from) - spatial_error(point_error_) -
+    const double taken = record.extent(-w) + enlarged(record.error()) - dot(w, from);
+    return gap_of_planes(taken) - 16 * unit_roundoff * max_abs(from) - spatial_error(point_error_) -
            16 * underflow_error;
   }
 
@@ -202,7 +173,7 @@ class ClosestSearch {
             outcome_of(near_enough(distance, options_), budget_spent_)};
   }
 
-  SurfaceWorkspace& workspace_;
+  PieceCache& cache_;
   const LimitSurface& surface_;
   Point3 to_;
   double point_error_;
@@ -210,9 +181,9 @@ class ClosestSearch {
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;
   DistanceBounds bounds_;
-  bool coarse_;                                        // far above the roundings of single precision
-  std::vector<NodeGap>& open_ = workspace_.waiting();  // the first of them wait
-  std::size_t waiting_ = 0;
+  bool coarse_;  // far above the roundings of single precision
+  Frontier<NodeGap>& open_ = cache_.open_nodes();
+  double gap_ = 0;  // of the node at hand
   // Where a quadratic came nearest that is known to be nearer than the point.
   struct OnQuadratic {
     Node node;
@@ -228,35 +199,34 @@ class ClosestSearch {
 
 }  // namespace
 
-ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const Precision& options,
-                           const Run& run) {
-  const LimitSurface& surface = workspace.model().surface();
+ClosestPoint closest_point(PieceCache& cache, const Point3& to, const Precision& options, const Run& run) {
+  const LimitSurface& surface = cache.model().surface();
   const QueryPoint asked(surface, to, "closest");
   const Precision wanted = with_precision(options, surface.size());
   require_value(asked.tame,
                 "closest: a point is more than 10^12 sizes of the surface away; give closer points");
-  return ClosestSearch(workspace, asked, wanted, run).run();
+  return ClosestSearch(cache, asked, wanted, run).run();
 }
 
-std::optional<bool> contains(SurfaceWorkspace& workspace, const Point3& point, const Run& run) {
-  const SurfaceBvh& model = workspace.model();
+std::optional<bool> contains(PieceCache& cache, const Point3& point, const Run& run) {
+  const SurfaceBvh& model = cache.model();
   const QueryPoint asked(model.surface(), point, "contains");
   static_cast<void>(model.solid());
-  workspace.begin();
+  cache.begin();
   if (!asked.tame) return false;
   const std::optional<int> number =
-      winding_number(workspace, asked.at, spatial_error(asked.error), monitor_of(run));
+      winding_number(cache, asked.at, spatial_error(asked.error), monitor_of(run));
   return number ? std::optional(*number != 0) : std::nullopt;
 }
 
-SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point, const Precision& options,
+SignedDistance signed_distance(PieceCache& cache, const Point3& point, const Precision& options,
                                const Run& run) {
-  const SurfaceBvh& model = workspace.model();
+  const SurfaceBvh& model = cache.model();
   static_cast<void>(model.solid());
   SignedDistance answer;
-  answer.nearest = closest_point(workspace, point, options, run);
+  answer.nearest = closest_point(cache, point, options, run);
   const ClosestPoint& nearest = answer.nearest;
-  const std::optional<bool> inside = contains(workspace, point, run);
+  const std::optional<bool> inside = contains(cache, point, run);
   answer.distance = {inside == false ? nearest.distance.lower : -nearest.distance.upper,
                      inside == true ? -nearest.distance.lower : nearest.distance.upper};
   const bool narrow =
@@ -275,8 +245,8 @@ ClosestPoint closest_point(const Surface& surface, const Point3& to, const Preci
 std::vector<ClosestPoint> closest_point(const Surface& surface, std::span<const Point3> to,
                                         const Precision& options, const Run& run) {
   std::vector<ClosestPoint> results(to.size());
-  for_each_point(surface, to, run, [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = closest_point(workspace, to[i], options, run);
+  for_each_point(surface, to, run, [&](PieceCache& cache, std::size_t i) {
+    results[i] = closest_point(cache, to[i], options, run);
   });
   certify(run, surface, to, results);
   return results;
@@ -292,9 +262,8 @@ std::vector<std::optional<bool>> contains(const Surface& surface, std::span<cons
                                           const Run& run) {
   static_cast<void>(surface.data()->bvh().solid());
   std::vector<std::optional<bool>> results(points.size());
-  for_each_point(surface, points, run, [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = contains(workspace, points[i], run);
-  });
+  for_each_point(surface, points, run,
+                 [&](PieceCache& cache, std::size_t i) { results[i] = contains(cache, points[i], run); });
   certify(run, surface, points, results);
   return results;
 }
@@ -310,8 +279,8 @@ std::vector<SignedDistance> signed_distance(const Surface& surface, std::span<co
                                             const Precision& options, const Run& run) {
   static_cast<void>(surface.data()->bvh().solid());
   std::vector<SignedDistance> results(points.size());
-  for_each_point(surface, points, run, [&](SurfaceWorkspace& workspace, std::size_t i) {
-    results[i] = signed_distance(workspace, points[i], options, run);
+  for_each_point(surface, points, run, [&](PieceCache& cache, std::size_t i) {
+    results[i] = signed_distance(cache, points[i], options, run);
   });
   certify(run, surface, points, results);
   return results;

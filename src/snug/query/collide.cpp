@@ -1,7 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 #include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
@@ -49,31 +49,15 @@ class CollideSearch {
 
   // Depth first; the pair that overlaps more deeply first.
   Collision run() {
-    thread_local std::vector<NodePair> stack;
-    thread_local std::vector<Waiting> waiting;
-    stack.clear();
-    waiting.clear();
     const NodePair roots = walk_.roots();
     // Points so near cannot be found sooner than a crossing is proved.
     proving_ = options_.prove_contact ||
                reach_ <= 0x1p-14 * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1)));
     NearPairs near(frames_, stats_, margin_);
-    if (!near.usable()) stack.push_back(roots);
-    while (!finished()) {
-      std::optional<NodePair> pair;
-      if (NodePair next; stack.empty() && near.usable() && near.next(next)) stack.push_back(next);
-      if (!stack.empty()) {
-        pair = stack.back();
-        stack.pop_back();
-        if (pair->bounded()) pair = after_a_look(*pair, waiting);
-        if (!pair) continue;
-      } else if (waiting.empty()) {
-        break;
-      } else {
-        pair = nearest_of(waiting);
-      }
-      if (!open(*pair, stack)) break;
-    }
+    open_.start(Order::last_first);
+    if (!near.usable()) open_.add(roots);
+    do search(open_, *this);
+    while (take_more(near));
     lower_ = std::min(lower_, std::max(0.0, near.others()));
     // An attempt costs about what a split does.
     if (found_ && !proving_ && stats_.splits > 0 && is_flat(*near_) && near_->near.certain_distance == 0) {
@@ -82,10 +66,39 @@ class CollideSearch {
     return result();
   }
 
+  // Rules (a), (b) and (c).
+  Verb look_at(const NodePair& pair) {
+    if (!pair.bounded()) return to_open(pair);
+    monitor_.checkpoint();
+    const PiecePair pieces = pieces_.nearest(pair);
+    if (!stays_open(pair, pieces)) return after_a_look();
+    if (PiecePairs::at_single_precision(pair)) {
+      return stays_open(pair, pieces_.nearest_in_double(pair)) ? to_open(pair) : after_a_look();
+    }
+    // Others may show at once what a split may show.
+    if (proving_) return to_open(pair);
+    waiting_[waiting_count_++] = {pair, length(pieces.between)};
+    return waiting_count_ == waiting_.size() ? open_nearest_waiting() : Verb::drop;
+  }
+  void open(const NodePair& pair) {
+    lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, margin_, open_.items())));
+  }
+
  private:
   [[nodiscard]] bool finished() const {
     if (crossing_) return true;
     return found_ && (!options_.prove_contact || attempts_ >= max_attempts_within);
+  }
+  [[nodiscard]] Verb after_a_look() const { return finished() ? Verb::stop : Verb::drop; }
+
+  // Where nothing is open: another pair of patches, or one that waits. False at the end.
+  bool take_more(NearPairs& near) {
+    if (finished() || ended_) return false;
+    if (NodePair next; near.usable() && near.next(next)) {
+      open_.add(next);
+      return true;
+    }
+    return waiting_count_ > 0 && open_nearest_waiting() == Verb::drop;
   }
 
   // A pair of pieces as near as has waited.
@@ -93,45 +106,26 @@ class CollideSearch {
     NodePair pair;
     double apart;
   };
-
-  // The pair to open next: this one, or one that has waited in its place; nothing if it is done, or waits.
-  std::optional<NodePair> after_a_look(const NodePair& pair, std::vector<Waiting>& waiting) {
-    monitor_.checkpoint();
-    const PiecePair pieces = pieces_.nearest(pair);
-    if (!look_at(pair, pieces)) return {};
-    if (PiecePairs::at_single_precision(pair)) {
-      if (!look_at(pair, pieces_.nearest_in_double(pair))) return {};
-      return pair;
-    }
-    // Others may show at once what a split may show.
-    if (proving_) return pair;
-    waiting.push_back({pair, length(pieces.between)});
-    if (waiting.size() <= max_waiting) return {};
-    return nearest_of(waiting);
-  }
-
-  static NodePair nearest_of(std::vector<Waiting>& waiting) {
-    const auto nearest = std::min_element(
-        waiting.begin(), waiting.end(), [](const Waiting& x, const Waiting& y) { return x.apart < y.apart; });
+  Verb open_nearest_waiting() {
+    Waiting* const end = waiting_.data() + waiting_count_;
+    Waiting* const nearest = std::min_element(
+        waiting_.data(), end, [](const Waiting& x, const Waiting& y) { return x.apart < y.apart; });
     const NodePair pair = nearest->pair;
-    waiting.erase(nearest);
-    return pair;
+    std::move(nearest + 1, end, nearest);
+    --waiting_count_;
+    const Verb verb = to_open(pair);
+    if (verb == Verb::open) open(pair);
+    return verb == Verb::stop ? Verb::stop : Verb::drop;
   }
 
-  // False when the budget ends.
-  bool open(const NodePair& pair, std::vector<NodePair>& out) {
-    const PairWalk::Opening opening = walk_.opening(pair);
-    if (opening == PairWalk::Opening::none) {
-      incomplete_ = true;
-      return true;
-    }
-    if (!walk_.may_open(pair, opening, max_splits_)) {
-      incomplete_ = true;
-      budget_spent_ = stats_.splits >= max_splits_;
-      return false;
-    }
-    lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, out)));
-    return true;
+  Verb to_open(const NodePair& pair) {
+    const PairWalk::May may = walk_.may(pair, max_splits_);
+    if (may == PairWalk::May::open) return Verb::open;
+    incomplete_ = true;
+    if (may == PairWalk::May::not_open) return Verb::drop;
+    ended_ = true;
+    budget_spent_ = stats_.splits >= max_splits_;
+    return Verb::stop;
   }
 
   // To prove a crossing both pieces must be flat.
@@ -141,8 +135,8 @@ class CollideSearch {
            static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
   }
 
-  // Rules (a) and (b). False if the pair is done with.
-  bool look_at(const NodePair& pair, const PiecePair& pieces) {
+  // Rules (a) and (b).
+  bool stays_open(const NodePair& pair, const PiecePair& pieces) {
     const double gap = pieces.gap > margin_
                            ? pieces.gap
                            : std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
@@ -219,6 +213,9 @@ class CollideSearch {
   SearchStats stats_;
   PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
   PiecePairs pieces_{frames_, stats_};
+  Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
+  std::array<Waiting, max_waiting + 1> waiting_;
+  std::size_t waiting_count_ = 0;
   const CollideOptions& options_;
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;
@@ -228,8 +225,8 @@ class CollideSearch {
   std::optional<PiecePair> near_;  // the two that came nearest
   int attempts_ = 0;
   bool proving_ = false;
-  // `incomplete_`: pairs were not opened, for the budget or because they cannot be.
-  bool found_ = false, crossing_ = false, incomplete_ = false, budget_spent_ = false;
+  // `incomplete_`: pairs were not opened, for the budget, which has `ended_`, or because they cannot be.
+  bool found_ = false, crossing_ = false, incomplete_ = false, ended_ = false, budget_spent_ = false;
 };
 
 // Makes of an answer about two closed surfaces that for the solids that they bound. A point of one surface in

@@ -186,9 +186,7 @@ struct PlacedEnd {
   PatchId other;
   TriangleParameter at;
   double doubt = 0;
-  // The piece of the other surface: its first corner, and its last ones from there.
-  TriangleParameter corner;
-  double width = 0, height = 0;
+  PiecePath piece;  // of the other surface
   std::uint32_t number = 0;
 
   [[nodiscard]] auto name() const { return std::tuple(side, line.name(), other); }
@@ -197,8 +195,8 @@ struct PlacedEnd {
   [[nodiscard]] bool holds(const PlacedEnd& end) const {
     const double low = std::min(line.from, line.to), high = std::max(line.from, line.to);
     if (!(end.along - end.doubt_along > low && end.along + end.doubt_along < high)) return false;
-    const double u = (end.at.u - corner.u) / width, v = (end.at.v - corner.v) / height;
-    const double off = 2 * end.doubt / std::min(std::fabs(width), std::fabs(height)) + 0x1p-40;
+    const auto [u, v] = piece.local(end.at);
+    const double off = 2 * end.doubt * piece.scale() + 0x1p-40;
     return u > off && v > off && u + v < 1 - 2 * off;
   }
 };
@@ -214,10 +212,8 @@ PlacedEnd placed_end(const std::array<const LimitSurface*, 2>& surfaces, const C
   result.doubt_along = end.doubt * std::fabs(length) + path_error;
   result.other = pieces.roots[1 - end.side];
   result.at = to_face(piece.path, turned(piece, end.at));
-  result.corner = to_face(piece.path, {0, 0});
-  result.width = to_face(piece.path, {1, 0}).u - result.corner.u;
-  result.height = to_face(piece.path, {0, 1}).v - result.corner.v;
-  result.doubt = 2 * end.doubt * std::max(std::fabs(result.width), std::fabs(result.height)) + path_error;
+  result.piece = piece.path;
+  result.doubt = 2 * end.doubt / piece.path.scale() + path_error;
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include <snug/contacts.h>
 
 #include <algorithm>
-#include <deque>
 #include <map>
 #include <utility>
 
@@ -70,53 +69,55 @@ class ContactsSearch {
     return std::move(answer_);
   }
 
+  Verb look_at(const NodePair& pair) {
+    if (pair.bounded()) {
+      monitor_.checkpoint();
+      if (!is_split(pair)) return Verb::drop;
+    }
+    const PairWalk::May may = walk_.may(pair, max_splits_);
+    if (pair.bounded() && may != PairWalk::May::open) {
+      const PiecePair pieces = pieces_.nearest(pair);
+      // Pieces that cannot be split are as fine as they get.
+      const bool end = may == PairWalk::May::end;
+      if (end || (within_ > 0 && !(pieces.near_distance <= within_))) {
+        answer_.outcome = worse(answer_.outcome, outcome_of(false, end && stats_.splits >= max_splits_));
+      }
+      list(pair, pieces);
+      return Verb::drop;
+    }
+    if (open_.size() + near_.size() <= max_splits_) return Verb::open;
+    answer_.exhaustive = false;
+    answer_.outcome = Outcome::budget_spent;
+    return Verb::stop;
+  }
+  void open(const NodePair& pair) {
+    opened_.clear();
+    static_cast<void>(walk_.open(pair, tolerance_, opened_));
+    for (const NodePair& child : opened_) open_.add(child);
+  }
+
  private:
   // ---- Pairs of pieces ----
 
   // Breadth first: where the budget ends, what is left is about equally large.
   void walk() {
     answer_.exhaustive = true;
-    std::deque<NodePair> queue{walk_.roots()};
-    const double size = static_cast<double>(std::max(walk_.size(queue[0], 0), walk_.size(queue[0], 1)));
-    fine_ = std::max(largest_share * size, tolerance_);
-    std::vector<NodePair> opened;
-    while (!queue.empty()) {
-      const NodePair pair = queue.front();
-      queue.pop_front();
-      if (pair.bounded()) {
-        monitor_.checkpoint();
-        if (!look_at(pair)) continue;
-      }
-      const PairWalk::Opening opening = walk_.opening(pair);
-      const bool none = opening == PairWalk::Opening::none;
-      if (pair.bounded() && (none || !walk_.may_open(pair, opening, max_splits_))) {
-        const PiecePair pieces = pieces_.nearest(pair);
-        // Pieces that cannot be split are as fine as they get.
-        if (!none || (within_ > 0 && !(pieces.near_distance <= within_))) {
-          answer_.outcome = worse(answer_.outcome, outcome_of(false, !none && stats_.splits >= max_splits_));
-        }
-        list(pair, pieces);
-        continue;
-      }
-      if (queue.size() + near_.size() > max_splits_) {
-        answer_.exhaustive = false;
-        answer_.outcome = Outcome::budget_spent;
-        return;
-      }
-      opened.clear();
-      static_cast<void>(walk_.open(pair, opening, tolerance_, opened));
-      queue.insert(queue.end(), opened.begin(), opened.end());
-    }
+    const NodePair roots = walk_.roots();
+    fine_ =
+        std::max(largest_share * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1))),
+                 tolerance_);
+    open_.start(Order::first_first, roots);
+    search(open_, *this);
   }
 
   // Is a pair to be split? Else it is done with: apart, or listed.
-  bool look_at(const NodePair& pair) {
+  bool is_split(const NodePair& pair) {
     PiecePair pieces = pieces_.nearest(pair);
     if (pieces.gap > tolerance_ || pieces_.gap_along(pair.nodes, pieces.between) > tolerance_) return false;
     // Flat pieces need not be split, however large.
     double size = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      if (SurfaceWorkspace::can_open(pair.nodes[s]))
+      if (PieceCache::can_open(pair.nodes[s]))
         size = std::max(size, static_cast<double>(walk_.size(pair, s)));
     }
     if (size > fine_) return true;
@@ -133,10 +134,10 @@ class ContactsSearch {
     item.within = pieces.near_distance <= within_;
     item.distance = {std::min(gap, pieces.near_distance), pieces.near_distance};
     for (std::size_t s = 0; s < 2; ++s) {
-      SurfaceWorkspace& workspace = frames_.workspace(s);
-      item.roots[s] = workspace.root_of(pair.nodes[s]);
+      PieceCache& cache = frames_.cache(s);
+      item.roots[s] = cache.name(pair.nodes[s]).patch;
       item.boxes[s] = box_of(pieces.base[s], pieces.radii[s]);
-      const Patch& patch = workspace.patch(pair.nodes[s]);
+      const Patch& patch = cache.patch(pair.nodes[s]);
       item.at[s] = to_face(patch.path, pieces.at[s]);
       if (gap <= 0 && options_.curves) item.pieces[s] = std::make_shared<const Patch>(patch);
     }
@@ -335,6 +336,8 @@ class ContactsSearch {
   SearchStats stats_;
   PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
   PiecePairs pieces_{frames_, stats_};
+  Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
+  std::vector<NodePair> opened_;
   const ContactsOptions& options_;
   Run run_;
   const WorkMonitor& monitor_;

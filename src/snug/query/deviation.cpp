@@ -13,10 +13,9 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/hausdorff.h>
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 #include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>
-#include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
 #include <support/run.h>
@@ -33,118 +32,58 @@ constexpr double first_error_share = 0x1p-12, next_share = 0x1p-3, last_share = 
 // Most quadratics of a set that is refined: of the budget one for so many parts, and beside them a few.
 constexpr std::uint64_t parts_a_piece = 8, min_pieces = 1u << 17;
 
-// A set as quadratic triangles, in units in which the largest coordinate of both sets is in [1, 2).
-class ComparedSet {
- public:
-  virtual ~ComparedSet() = default;
-  // Splits what `which` names until errors are at most `error`; returns the piece that each one is a part of. None,
-  // and all as it was, where there would be too many.
-  virtual std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) = 0;
-  [[nodiscard]] virtual BoundedPoint point(std::uint32_t piece, TriangleParameter at) const = 0;
-  [[nodiscard]] virtual std::optional<Place> place(std::uint32_t piece, TriangleParameter at) const = 0;
-
-  // Was there one that would have been too many?
-  [[nodiscard]] bool is_full() const { return full_; }
-  [[nodiscard]] std::span<const QuadraticTriangle> quadratics() const { return quadratics_; }
-  [[nodiscard]] const QuadraticBvh& tree(int threads) {
-    if (!tree_) tree_ = std::make_unique<QuadraticBvh>(quadratics_, threads);
-    return *tree_;
-  }
-
- protected:
-  std::vector<QuadraticTriangle> quadratics_;
-  std::unique_ptr<QuadraticBvh> tree_;
-  bool full_ = false;
+// A set in units in which the largest coordinate of both is in [1, 2), and whether it could not be made as fine as was wanted.
+struct ComparedSet {
+  PieceSet pieces;
+  bool is_full = false;
 };
 
-class TriangleSet final : public ComparedSet {
- public:
-  TriangleSet(std::span<const Triangle> triangles, PowerOfTwo scale) {
-    quadratics_.reserve(triangles.size());
-    for (const Triangle& t : triangles) {
-      quadratics_.push_back(flat_quadratic({scale.apply(t[0]), scale.apply(t[1]), scale.apply(t[2])}));
+// Of a surface, in units of which a mesh unit is `scale` many.
+ComparedSet compared(const LimitSurface& surface, PowerOfTwo scale, double error, const Run& run) {
+  ComparedSet set{
+      {surface, error, run.threads, stop_only(run), UINT64_MAX, scale * surface.scale().inverse()}};
+  for (std::size_t i = 0; i < set.pieces.size(); ++i) {
+    if (!std::isfinite(set.pieces[i].error)) {
+      throw InputError(InputProblem::unrepresentable,
+                       "deviation: a patch of the surface does not fit doubles; scale the mesh");
     }
   }
-  std::vector<std::uint32_t> refine(std::span<const std::uint8_t>, double) override { return {}; }
-  [[nodiscard]] BoundedPoint point(std::uint32_t piece, TriangleParameter at) const override {
-    return {point_of(quadratics_[piece], at), 0x1p-48};
-  }
-  [[nodiscard]] std::optional<Place> place(std::uint32_t, TriangleParameter) const override {
-    return std::nullopt;
-  }
-};
+  set.pieces.prepare(run.threads);
+  return set;
+}
 
-class SurfaceSet final : public ComparedSet {
- public:
-  SurfaceSet(const LimitSurface& surface, PowerOfTwo scale, double error, const Run& run)
-      : surface_(surface),
-        to_common_(scale * surface.scale().inverse()),
-        threads_(run.threads),
-        max_(min_pieces + run.max_splits.value_or(default_splits::deviation) / parts_a_piece),
-        monitor_(stop_only(run)),
-        pieces_(quadratic_pieces(surface, own(error), threads_, monitor_)) {
-    take();
+ComparedSet compared(std::span<const Triangle> triangles, PowerOfTwo scale, const Run& run) {
+  std::vector<QuadraticTriangle> flat;
+  flat.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    flat.push_back(flat_quadratic({scale.apply(t[0]), scale.apply(t[1]), scale.apply(t[2])}));
   }
-  std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) override {
-    RefinedPieces parts = refined(surface_, pieces_, which, own(error), threads_, monitor_,
-                                  std::max<std::uint64_t>(max_, pieces_.size()));
-    full_ = parts.pieces.empty();
-    if (full_) return {};
-    pieces_ = std::move(parts.pieces);
-    take();
-    return std::move(parts.origins);
-  }
-  [[nodiscard]] BoundedPoint point(std::uint32_t piece, TriangleParameter at) const override {
-    const Patch patch = surface_.patch(pieces_[piece].root);
-    const BoundedPoint own = limit_point(patch, to_face(pieces_[piece].path, at)).from(patch.origin);
-    return unscaled(own, to_common_);
-  }
-  [[nodiscard]] std::optional<Place> place(std::uint32_t piece, TriangleParameter at) const override {
-    return place_of(surface_, pieces_[piece].root, to_face(pieces_[piece].path, at));
-  }
+  ComparedSet set{PieceSet(std::move(flat))};
+  set.pieces.prepare(run.threads);
+  return set;
+}
 
- private:
-  [[nodiscard]] double own(double error) const { return to_common_.inverse().apply(error); }
-  void take() {
-    tree_.reset();
-    quadratics_.clear();
-    quadratics_.reserve(pieces_.size());
-    for (const QuadraticPiece& piece : pieces_) {
-      QuadraticTriangle q = piece.quadratic;
-      if (!std::isfinite(q.error)) {
-        throw InputError(InputProblem::unrepresentable,
-                         "deviation: a patch of the surface does not fit doubles; scale the mesh");
-      }
-      for (std::size_t k = 0; k < 3; ++k) {
-        q.corners[k] = to_common_.apply(q.corners[k]);
-        q.middles[k] = to_common_.apply(q.middles[k]);
-      }
-      q.error = to_common_.apply(q.error) + 8 * underflow_error;
-      quadratics_.push_back(q);
-    }
-  }
-
-  const LimitSurface& surface_;
-  PowerOfTwo to_common_;
-  int threads_;
-  std::uint64_t max_;
-  WorkMonitor monitor_;
-  std::vector<QuadraticPiece> pieces_;
-};
+// Makes what `which` names finer; the piece that each one is a part of, none where nothing was done.
+std::vector<std::uint32_t> refine(ComparedSet& set, std::span<const std::uint8_t> which, double error,
+                                  const Run& run) {
+  const std::uint64_t most = std::max<std::uint64_t>(
+      min_pieces + run.max_splits.value_or(default_splits::deviation) / parts_a_piece, set.pieces.size());
+  std::vector<std::uint32_t> origins = set.pieces.refine(which, error, run.threads, stop_only(run), most);
+  set.is_full = origins.empty() && set.pieces.is_surface();
+  set.pieces.prepare(run.threads);
+  return origins;
+}
 
 // Distance of a set, or of its part on one side, from the other set.
 class HausdorffBound {
  public:
-  HausdorffBound(ComparedSet& from, ComparedSet& to, HausdorffOptions options)
-      : from_(from), to_(to), options_(std::move(options)), active_(from.quadratics().size()) {
+  HausdorffBound(const PieceSet& from, const PieceSet& to, HausdorffOptions options)
+      : from_(from), to_(to), options_(std::move(options)), active_(from.size()) {
     for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = static_cast<std::uint32_t>(i);
   }
 
   void resolve(bool last, const WorkMonitor& monitor) {
-    const QuadraticSet set{from_.quadratics(), [this](std::uint32_t piece, TriangleParameter at) {
-                             return from_.point(piece, at);
-                           }};
-    unresolved_ = snug::resolve(set, active_, to_.tree(options_.threads), options_, last, farthest_, monitor);
+    unresolved_ = snug::resolve(from_, active_, to_, options_, last, farthest_, monitor);
     if (!farthest_.at) return;
     keep(farthest_.from, *farthest_.at, farthest_.to);
     farthest_.at.reset();
@@ -154,12 +93,12 @@ class HausdorffBound {
   [[nodiscard]] bool ended() const { return farthest_.ended; }
 
   // Marks the pieces whose errors are in the way.
-  void mark(const ComparedSet& of, std::span<std::uint8_t> marks) const {
+  void mark(const PieceSet& of, std::span<std::uint8_t> marks) const {
     for (const Unresolved& u : unresolved_) {
       if (&of == &from_) {
         marks[u.piece] = 1;
       } else {
-        to_.tree(options_.threads).mark_near(from_.quadratics()[u.piece], u.reach, marks);
+        mark_near(to_, from_[u.piece], u.reach, marks);
       }
     }
   }
@@ -181,13 +120,13 @@ class HausdorffBound {
       }
     }
   }
-  [[nodiscard]] const ComparedSet& from() const { return from_; }
+  [[nodiscard]] const PieceSet& from() const { return from_; }
 
   [[nodiscard]] OneSidedDistance answer(PowerOfTwo back) {
     if (!found_) {
       // Nothing is farther away than 0: any point will do.
       const BoundedPoint first = from_.point(0, {});
-      keep(first, {0, {}}, to_.tree(options_.threads).nearest(from_.quadratics()[0].corners[0]));
+      keep(first, {0, {}}, nearest_foot(to_, from_[0].corners[0]));
     }
     OneSidedDistance result;
     result.distance = {unscaled_down(std::max(0.0, farthest_.lower), back),
@@ -207,8 +146,8 @@ class HausdorffBound {
     to_point_ = to_.point(to.piece, to.at).position;
   }
 
-  ComparedSet& from_;
-  ComparedSet& to_;
+  const PieceSet& from_;
+  const PieceSet& to_;
   HausdorffOptions options_;
   std::vector<std::uint32_t> active_;
   std::vector<Unresolved> unresolved_;
@@ -221,7 +160,7 @@ class HausdorffBound {
 
 // Is a point, in common units, inside of a closed surface?
 SideTest side_test(const SurfaceBvh& model, PowerOfTwo from_common, bool inside) {
-  auto workspace = std::make_shared<SurfaceWorkspace>(model);
+  auto workspace = std::make_shared<PieceCache>(model);
   return [workspace, from_common, inside](const Point3& point, double error) -> std::optional<bool> {
     workspace->begin();
     const Point3 own = from_common.apply(point);
@@ -286,10 +225,10 @@ OneSidedDistance larger_of(const OneSidedDistance& a, const OneSidedDistance& b)
   return result;
 }
 
-Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& candidate,
+Deviation compare(const SurfaceBvh& model, ComparedSet surface, ComparedSet candidate,
                   const ScaledOptions& asked, const DeviationOptions& options, const Run& run) {
   std::vector<HausdorffBound> directions;
-  directions.emplace_back(surface, candidate, asked.options(run));
+  directions.emplace_back(surface.pieces, candidate.pieces, asked.options(run));
   if (options.solid) {
     const PowerOfTwo from_common = model.surface().scale() * asked.scale.inverse();
     for (const bool inside : {true, false}) {
@@ -297,10 +236,10 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
       one_side.make_side_test = [&model, from_common, inside] {
         return side_test(model, from_common, inside);
       };
-      directions.emplace_back(candidate, surface, std::move(one_side));
+      directions.emplace_back(candidate.pieces, surface.pieces, std::move(one_side));
     }
   } else {
-    directions.emplace_back(candidate, surface, asked.options(run));
+    directions.emplace_back(candidate.pieces, surface.pieces, asked.options(run));
   }
 
   const WorkMonitor quiet = stop_only(run);
@@ -311,7 +250,7 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
                        [](const HausdorffBound& q) { return q.resolved(); });
   };
   for (;;) {
-    const bool last = error <= asked.last_error() || surface.is_full() || candidate.is_full();
+    const bool last = error <= asked.last_error() || surface.is_full || candidate.is_full;
     for (HausdorffBound& direction : directions) {
       if (!direction.open()) continue;
       direction.resolve(last, quiet);
@@ -323,13 +262,13 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
     std::array<ComparedSet*, 2> sets{&surface, &candidate};
     std::array<std::vector<std::uint8_t>, 2> marks;
     for (std::size_t i = 0; i < 2; ++i) {
-      marks[i].assign(sets[i]->quadratics().size(), 0);
-      for (const HausdorffBound& direction : directions) direction.mark(*sets[i], marks[i]);
+      marks[i].assign(sets[i]->pieces.size(), 0);
+      for (const HausdorffBound& direction : directions) direction.mark(sets[i]->pieces, marks[i]);
     }
     std::array<std::vector<std::uint32_t>, 2> origins;
-    for (std::size_t i = 0; i < 2; ++i) origins[i] = sets[i]->refine(marks[i], error);
+    for (std::size_t i = 0; i < 2; ++i) origins[i] = refine(*sets[i], marks[i], error, run);
     for (HausdorffBound& direction : directions)
-      direction.go_on(origins[&direction.from() == &surface ? 0 : 1]);
+      direction.go_on(origins[&direction.from() == &surface.pieces ? 0 : 1]);
   }
 
   const PowerOfTwo back = asked.scale.inverse();
@@ -348,7 +287,7 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
     if (side) reached = reached && is_reached(side->distance, options, precision);
   }
   const bool spent =
-      surface.is_full() || candidate.is_full() ||
+      surface.is_full || candidate.is_full ||
       std::any_of(directions.begin(), directions.end(), [](const HausdorffBound& q) { return q.ended(); });
   result.outcome = outcome_of(reached, spent);
   monitor_of(run).report(1);
@@ -386,9 +325,8 @@ Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
   const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : model.surface().scale();
   const ScaledOptions asked(options, model.surface(), own);
   require_closed_if_solid(model, options);
-  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), run);
-  TriangleSet second(candidate, asked.scale);
-  return compare(model, first, second, asked, options, run);
+  return compare(model, compared(model.surface(), asked.scale, asked.first_error(), run),
+                 compared(candidate, asked.scale, run), asked, options, run);
 }
 
 Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,
@@ -397,9 +335,8 @@ Deviation deviation(const Surface& surface, const Surface& candidate, const Devi
   const LimitSurface& other = candidate.data()->bvh().surface();
   const ScaledOptions asked(options, model.surface(), other.scale());
   require_closed_if_solid(model, options);
-  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), run);
-  SurfaceSet second(other, asked.scale, asked.first_error(), run);
-  return compare(model, first, second, asked, options, run);
+  return compare(model, compared(model.surface(), asked.scale, asked.first_error(), run),
+                 compared(other, asked.scale, asked.first_error(), run), asked, options, run);
 }
 
 }  // namespace snug

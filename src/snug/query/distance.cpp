@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -40,73 +41,69 @@ class DistanceSearch {
   // Depth first, the nearest first, from an upper bound on.
   Distance run() {
     dive();
-    thread_local std::vector<NodePair> stack;
-    stack.clear();
-    stack.assign(1, walk_.roots());
-    while (!stack.empty() && !bounds_.done()) {
-      const NodePair pair = stack.back();
-      stack.pop_back();
-      const double gap = std::max(static_cast<double>(pair.gap), 0.0);
-      if (gap >= bounds_.prune_distance()) {
-        bounds_.prune(gap);
-      } else if (!visit(pair, stack)) {
-        bounds_.prune(gap);
-        break;
-      }
-    }
+    open_.start(Order::last_first, walk_.roots());
+    search(open_, *this);
     // Pairs not visited, since the bounds are near enough or the budget has ended.
-    for (const NodePair& pair : stack) bounds_.prune(std::max(static_cast<double>(pair.gap), 0.0));
+    open_.for_each([&](const NodePair& pair) { bounds_.prune(gap_of(pair)); });
     return result();
   }
 
- private:
-  // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
-  void dive() {
-    thread_local std::vector<NodePair> front, next;
-    front.assign(1, walk_.roots());
-    const auto whole = [](const NodePair& pair) { return pair.bounded(); };
-    while (!std::all_of(front.begin(), front.end(), whole)) {
-      next.clear();
-      for (const NodePair& pair : front) {
-        if (whole(pair)) {
-          next.push_back(pair);
-        } else {
-          static_cast<void>(walk_.open(pair, walk_.opening(pair), INFINITY, next));
-        }
-      }
-      const std::size_t kept = std::min(beam, next.size());
-      ordering::partial_sort(next.data(), kept, next.size(), nearer);
-      front.assign(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(kept));
-    }
-    for (const NodePair& pair : front) improve(pair, pieces_.nearest(pair));
-  }
-
-  // False when the budget ends.
-  bool visit(const NodePair& pair, std::vector<NodePair>& stack) {
-    double gap = std::max(static_cast<double>(pair.gap), 0.0);
-    if (pair.bounded()) {
+  Verb look_at(const NodePair& pair) {
+    double gap = gap_of(pair);
+    if (bounds_.done()) return stop(gap);
+    if (pair.bounded() && gap < bounds_.prune_distance()) {
       monitor_.checkpoint();
       gap = std::max(gap, gap_of_pieces(pair));
+      if (gap < bounds_.prune_distance() && PiecePairs::at_single_precision(pair)) {
+        gap = std::max(gap, gap_in_double(pair));
+      }
     }
-    const PairWalk::Opening opening = walk_.opening(pair);
-    if (gap < bounds_.prune_distance() && pair.bounded() && PiecePairs::at_single_precision(pair)) {
-      const PiecePair pieces = pieces_.nearest_in_double(pair);
-      take(PiecePairs::approximate_witness(pieces));
-      try_crossing(pair, pieces);
-      gap = std::max(gap, pieces.gap);
-    }
-    if (gap >= bounds_.prune_distance() || opening == PairWalk::Opening::none) {
+    const PairWalk::May may = walk_.may(pair, max_splits_);
+    if (gap >= bounds_.prune_distance() || may == PairWalk::May::not_open) {
       bounds_.prune(gap);
-      return true;
+      return Verb::drop;
     }
-    if (!walk_.may_open(pair, opening, max_splits_)) {
-      budget_spent_ = stats_.splits >= max_splits_;
-      return false;
+    if (may == PairWalk::May::open) return Verb::open;
+    budget_spent_ = stats_.splits >= max_splits_;
+    return stop(gap_of(pair));
+  }
+  void open(const NodePair& pair) {
+    std::vector<NodePair>& all = open_.items();
+    const std::size_t first = all.size();
+    bounds_.prune(static_cast<double>(walk_.open(pair, bounds_.prune_distance(), all)));
+    ordering::sort(all.data() + first, all.size() - first, farther_pair);
+  }
+
+ private:
+  [[nodiscard]] static double gap_of(const NodePair& pair) {
+    return std::max(static_cast<double>(pair.gap), 0.0);
+  }
+  Verb stop(double gap) {
+    bounds_.prune(gap);
+    return Verb::stop;
+  }
+
+  // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
+  void dive() {
+    std::array<NodePair, beam> front{walk_.roots()};
+    std::size_t count = 1;
+    open_.start(Order::last_first);
+    std::vector<NodePair>& next = open_.items();
+    const auto whole = [](const NodePair& pair) { return pair.bounded(); };
+    while (!std::all_of(front.begin(), front.begin() + count, whole)) {
+      next.clear();
+      for (std::size_t i = 0; i < count; ++i) {
+        if (whole(front[i])) {
+          next.push_back(front[i]);
+        } else {
+          static_cast<void>(walk_.open(front[i], INFINITY, next));
+        }
+      }
+      count = std::min(beam, next.size());
+      ordering::partial_sort(next.data(), count, next.size(), nearer);
+      std::copy_n(next.begin(), count, front.begin());
     }
-    const std::size_t first = stack.size();
-    bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), stack)));
-    ordering::sort(stack.data() + first, stack.size() - first, farther_pair);
-    return true;
+    for (std::size_t i = 0; i < count; ++i) improve(front[i], pieces_.nearest(front[i]));
   }
 
   // A lower bound of the distance of two pieces; improves the upper one.
@@ -116,6 +113,13 @@ class DistanceSearch {
     const PiecePair pieces = pieces_.nearest(pair);
     improve(pair, pieces);
     return std::max({along, pieces.gap, pieces_.gap_along(pair.nodes, pieces.between)});
+  }
+
+  double gap_in_double(const NodePair& pair) {
+    const PiecePair pieces = pieces_.nearest_in_double(pair);
+    take(PiecePairs::approximate_witness(pieces));
+    try_crossing(pair, pieces);
+    return pieces.gap;
   }
 
   // The upper bound, by limit points near each other or by a proof of contact.
@@ -159,6 +163,7 @@ class DistanceSearch {
   SearchStats stats_;
   PairWalk walk_{frames_, stats_, WideNode::Gaps::lines};
   PiecePairs pieces_{frames_, stats_};
+  Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
   const DistanceOptions& options_;
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;

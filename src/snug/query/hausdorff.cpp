@@ -45,7 +45,7 @@ constexpr std::size_t chunks_at_once = 64;
 
 class Chunk {
  public:
-  Chunk(const QuadraticSet& set, const QuadraticBvh& other, const HausdorffOptions& options, bool last,
+  Chunk(const PieceSet& set, const PieceSet& other, const HausdorffOptions& options, bool last,
         const Farthest& known)
       : set_(set), other_(other), options_(options), last_(last), found_(known) {
     found_.compared = 0;
@@ -83,7 +83,7 @@ class Chunk {
 
  private:
   void see(Part& part) {
-    quadratic_ = restricted(set_.quadratics[part.piece], part.at);
+    quadratic_ = restricted(set_[part.piece], part.at);
     compare(part);
     if (part.depth == 0) part.reach = part.upper;
   }
@@ -134,7 +134,7 @@ class Chunk {
   }
 
   void find_side(Part& part, const SideTest& side_test) const {
-    if (other_.may_meet(quadratic_)) return;
+    if (may_meet(other_, quadratic_)) return;
     // No point of it is on the surface: all are on one side.
     const std::optional<bool> asked = side_test(quadratic_.corners[0], distance_rounding);
     if (asked) part.side = *asked ? Side::asked : Side::other;
@@ -154,10 +154,10 @@ class Chunk {
     if (side_test && part.side != Side::asked) {
       if (side_test(point.position, spatial_error(point.error)) != true) return false;
     }
-    QuadraticFoot foot = other_.foot_on(part.feet[k].piece, point.position);
+    QuadraticFoot foot = foot_on(other_, part.feet[k].piece, point.position);
     const double before = foot.distance;
     const double lower =
-        other_.certain_distance(point.position, options_.precision / 16, foot) - spatial_error(point.error);
+        certain_distance(other_, point.position, options_.precision / 16, foot) - spatial_error(point.error);
     if (lower > found_.lower) {
       found_.lower = lower;
       found_.from = point;
@@ -165,7 +165,7 @@ class Chunk {
       found_.at = {part.piece, part.at[k]};
     }
     if (foot.distance < before) {
-      part.feet[k] = other_.foot_on(foot.piece, quadratic_.corners[k]);
+      part.feet[k] = foot_on(other_, foot.piece, quadratic_.corners[k]);
       part.tried = static_cast<std::uint8_t>(part.tried & ~(1u << k));
     }
     return true;
@@ -186,18 +186,18 @@ class Chunk {
       ++different;
       std::array<QuadraticFoot, 3> feet = part.feet;
       for (std::size_t k = 0; k < 3; ++k) {
-        if (feet[k].piece != piece) feet[k] = other_.foot_on(piece, quadratic_.corners[k]);
+        if (feet[k].piece != piece) feet[k] = foot_on(other_, piece, quadratic_.corners[k]);
         to_piece[i][k] = feet[k].distance;
       }
-      const QuadraticTriangle below = other_.below(feet);
+      const QuadraticTriangle there = below(other_, feet);
       double at_corners = 0;
       std::array<double, 3> at_middles;
       for (std::size_t k = 0; k < 3; ++k) {
         at_corners = std::max(at_corners, feet[k].distance);
-        at_middles[k] = distance(quadratic_.middles[k], below.middles[k]);
+        at_middles[k] = distance(quadratic_.middles[k], there.middles[k]);
       }
       const double geometric = std::max({at_corners, at_middles[0], at_middles[1], at_middles[2]});
-      const double errors = set_.quadratics[part.piece].error + other_[piece].error;
+      const double errors = set_[part.piece].error + other_[piece].error;
       const double upper = enlarged(geometric + errors) + distance_rounding;
       if (upper < now_.upper) {
         now_.upper = upper;
@@ -253,8 +253,8 @@ class Chunk {
     const TriangleParameter a = part.at[k], b = part.at[next];
     TriangleParameter at{a.u + share * (b.u - a.u), a.v + share * (b.v - a.v)};
     if (at.u + at.v > 1) at.v = 1 - at.u;
-    const Point3 point = point_of(set_.quadratics[part.piece], at);
-    const QuadraticFoot foot = other_.nearest(point, part.feet[share < 0.5 ? k : next]);
+    const Point3 point = point_of(set_[part.piece], at);
+    const QuadraticFoot foot = nearest_foot(other_, point, part.feet[share < 0.5 ? k : next]);
     for (const std::size_t moved : {k, next}) {
       Part child = part;
       child.at[moved] = at;
@@ -265,11 +265,11 @@ class Chunk {
     }
   }
   [[nodiscard]] Point3 quadratic_corner(const Part& part, std::size_t k) const {
-    return point_of(set_.quadratics[part.piece], part.at[k]);
+    return point_of(set_[part.piece], part.at[k]);
   }
 
-  const QuadraticSet& set_;
-  const QuadraticBvh& other_;
+  const PieceSet& set_;
+  const PieceSet& other_;
   const HausdorffOptions& options_;
   bool last_;
   Farthest found_;
@@ -281,8 +281,8 @@ class Chunk {
 // The feet of the corners of pieces; corners at the same point are asked once.
 class CornerFeet {
  public:
-  CornerFeet(const QuadraticSet& set, std::span<const std::uint32_t> pieces, const QuadraticBvh& other,
-             int threads, const WorkMonitor& monitor) {
+  CornerFeet(const PieceSet& set, std::span<const std::uint32_t> pieces, const PieceSet& other, int threads,
+             const WorkMonitor& monitor) {
     std::size_t size = 16;
     while (size < 6 * pieces.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
@@ -290,7 +290,7 @@ class CornerFeet {
     names_.resize(3 * pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Point3& p = set.quadratics[pieces[i]].corners[k];
+        const Point3& p = set[pieces[i]].corners[k];
         std::size_t slot = hash(p) & (size - 1);
         while (table[slot] != UINT32_MAX && !(points[table[slot]] == p)) slot = (slot + 1) & (size - 1);
         if (table[slot] == UINT32_MAX) {
@@ -308,7 +308,7 @@ class CornerFeet {
         monitor.checkpoint();
         QuadraticFoot hint;
         for (std::size_t i = b * block; i < std::min(points.size(), (b + 1) * block); ++i) {
-          hint = feet_[i] = other.nearest(points[i], hint);
+          hint = feet_[i] = nearest_foot(other, points[i], hint);
         }
       }
     });
@@ -345,8 +345,8 @@ void merge(Farthest& all, const Farthest& part) {
 
 }  // namespace
 
-std::vector<Unresolved> resolve(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
-                                const QuadraticBvh& other, const HausdorffOptions& options, bool last,
+std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32_t> pieces,
+                                const PieceSet& other, const HausdorffOptions& options, bool last,
                                 Farthest& farthest, const WorkMonitor& monitor) {
   const CornerFeet corners(set, pieces, other, options.threads, monitor);
   const auto first_part = [&](std::size_t i) {

@@ -7,16 +7,9 @@
 #include <vector>
 
 #include <snug/run.h>
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
 
 namespace snug {
-
-/// A set of points that is searched: quadratic triangles near its pieces, and the set's own points.
-struct QuadraticSet {
-  std::span<const QuadraticTriangle> quadratics;
-  /// The point of the set itself at a parameter of a piece.
-  std::function<BoundedPoint(std::uint32_t piece, TriangleParameter at)> point;
-};
 
 /// Is a point on the queried side? Nothing where that is not known. One test a thread.
 using SideTest = std::function<std::optional<bool>(const Point3& point, double error)>;
@@ -55,10 +48,10 @@ struct Unresolved {
 /// Guarantee: after it, every point of pieces that are resolved, and on the queried side, is at most
 ///            `farthest.upper` from the other set; the point `from` is at least `farthest.lower` from it. The
 ///            same for any number of threads.
-/// Requires:  with `last` pieces are resolved whatever their errors are.
+/// Requires:  sets that are prepared; with `last` pieces are resolved whatever their errors are.
 /// Source:    derivations/deviation.md.
-[[nodiscard]] std::vector<Unresolved> resolve(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
-                                              const QuadraticBvh& other, const HausdorffOptions& options,
+[[nodiscard]] std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32_t> pieces,
+                                              const PieceSet& other, const HausdorffOptions& options,
                                               bool last, Farthest& farthest, const WorkMonitor& monitor = {});
 
 }  // namespace snug

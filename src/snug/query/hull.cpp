@@ -17,12 +17,11 @@
 #include <snug/query/closest.h>
 #include <snug/query/pair_queries.h>
 #include <snug/query/tessellate.h>
+#include <snug/search/feet.h>
 #include <snug/search/piece.h>
 #include <snug/search/precision.h>
-#include <snug/search/quadratic_bvh.h>
 #include <snug/search/self_contact.h>
 #include <snug/surface/evaluate.h>
-#include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/error.h>
@@ -128,8 +127,8 @@ std::uint64_t max_pieces(const LimitSurface& surface, const Run& run) {
 class OneHull {
  public:
   // `pieces`: for both sides, once one of them has triangles enough to be kept off them.
-  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner,
-          std::vector<QuadraticPiece>& pieces, const Run& run)
+  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner, PieceSet& pieces,
+          const Run& run)
       : surface_(surface),
         options_(options),
         inner_(inner),
@@ -154,7 +153,7 @@ class OneHull {
       wrong_.assign(surface_.owner_count(), 0);
       move_vertices();
       if (!whole_mesh() && !problems_.empty()) break;
-      if (!tree_ && !make_pieces()) break;
+      if (pieces_.size() == 0 && !make_pieces()) break;
       piece_marks_.assign(pieces_.size(), 0);
       if (!any_turned_) keep_off();
       if (problems_.empty()) break;
@@ -191,24 +190,18 @@ class OneHull {
   }
   // False, with a problem, if there would be too many.
   bool make_pieces() {
-    if (first_pieces_.empty()) {
+    if (first_pieces_.size() == 0) {
       const double error = quadratic_share * first_share * scale_.apply(*options_.error);
-      first_pieces_ = quadratic_pieces(surface_, error, run_.threads, monitor_, max_pieces(surface_, run_));
+      first_pieces_ = PieceSet(surface_, error, run_.threads, monitor_, max_pieces(surface_, run_));
+      if (first_pieces_.size() == 0) return blame_budget();
+      first_pieces_.prepare(run_.threads);
     }
-    if (first_pieces_.empty()) return blame_budget();
     pieces_ = first_pieces_;
-    make_tree();
     return true;
   }
   bool blame_budget() {
     blame(HullFault::too_few_triangles, 0, mesh_.positions[mesh_.triangles[0][0]]);
     return false;
-  }
-  void make_tree() {
-    quadratics_.clear();
-    quadratics_.reserve(pieces_.size());
-    for (const QuadraticPiece& piece : pieces_) quadratics_.push_back(piece.quadratic);
-    tree_ = std::make_unique<QuadraticBvh>(quadratics_, run_.threads);
   }
 
   [[nodiscard]] Triangle scaled(const std::vector<Point3>& points, const Names& t) const {
@@ -316,7 +309,7 @@ class OneHull {
         if (t % 256 == 0) monitor_.checkpoint();
         if (wrong_[mesh_.owners[t]] != 0) continue;  // there is no position, or none that is near enough
         const double flat = flat_share * scale_.apply(tolerances_[mesh_.owners[t]]);
-        meets[t] = tree_->may_meet(flat_quadratic(scaled(hull_, mesh_.triangles[t])), flat);
+        meets[t] = may_meet(pieces_, flat_quadratic(scaled(hull_, mesh_.triangles[t])), flat);
       }
     });
     for (std::size_t t = 0; t < count; ++t) {
@@ -325,10 +318,10 @@ class OneHull {
       blame(HullFault::meets_surface, t, mesh_.positions[names[0]]);
       // It may meet another sheet, whose own facets are as near.
       const QuadraticTriangle facet = flat_quadratic(scaled(hull_, names));
-      tree_->mark_near(facet, 0, piece_marks_);
+      mark_near(pieces_, facet, 0, piece_marks_);
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      if (piece_marks_[p] != 0) mark_wrong(surface_.place(pieces_[p].root).owner, min_share_apart);
+      if (piece_marks_[p] != 0) mark_wrong(surface_.place(pieces_.name(p).patch).owner, min_share_apart);
     }
     std::vector<Point3> points;
     points.reserve(hull_.size());
@@ -350,11 +343,11 @@ class OneHull {
       any = true;
     }
     if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
-      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error), run_.threads,
-                        monitor_, max_pieces(surface_, run_))
-                    .pieces;
-      if (pieces_.empty()) return blame_budget();
-      make_tree();
+      const double finer = quadratic_share * scale_.apply(error);
+      if (pieces_.refine(piece_marks_, finer, run_.threads, monitor_, max_pieces(surface_, run_)).empty()) {
+        return blame_budget();
+      }
+      pieces_.prepare(run_.threads);
     }
     return any;
   }
@@ -370,10 +363,8 @@ class OneHull {
   Tessellation mesh_;
   std::vector<double> errors_;
   std::vector<std::uint32_t> begins_, around_;  // triangles around each vertex
-  std::vector<QuadraticPiece>& first_pieces_;
-  std::vector<QuadraticPiece> pieces_;
-  std::vector<QuadraticTriangle> quadratics_;
-  std::unique_ptr<QuadraticBvh> tree_;
+  PieceSet& first_pieces_;
+  PieceSet pieces_;
   bool border_ = false, inward_ = false;
   std::vector<HullProblem> problems_;
   std::vector<double> wrong_;              // of owners where something is: the least share
@@ -394,7 +385,7 @@ class FacetSurface {
 
   [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
   [[nodiscard]] const SurfaceBvh& model() const { return bvh_; }
-  [[nodiscard]] SurfaceWorkspace& workspace() { return workspace_; }
+  [[nodiscard]] PieceCache& workspace() { return workspace_; }
 
  private:
   static ControlMesh mesh_of(const Hull& hull) {
@@ -407,7 +398,7 @@ class FacetSurface {
 
   LimitSurface limit_;
   SurfaceBvh bvh_;
-  SurfaceWorkspace workspace_;
+  PieceCache workspace_;
 };
 
 // All that is claimed, by queries that know nothing of how the hulls were made.
@@ -534,7 +525,7 @@ class Verification {
   WorkMonitor monitor_;
   Run run_;                      // with this monitor
   std::uint64_t largest_count_;  // of triangles of a hull
-  SurfaceWorkspace own_;
+  PieceCache own_;
   std::vector<Member> own_points_, points_of_hull_;
   double certain_gap_ = 0;  // mesh units
   std::vector<HullProblem> problems_;
@@ -570,7 +561,7 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
                          shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
-  std::vector<QuadraticPiece> pieces;
+  PieceSet pieces;
   Hulls result;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;

@@ -45,7 +45,7 @@ std::vector<Point3> points_between(std::span<const Point3> p, std::span<const Po
   return points;
 }
 
-Deformation::Deformation(const SurfaceBvh& model, SurfaceWorkspace& scratch, std::span<const Point3> end)
+Deformation::Deformation(const SurfaceBvh& model, PieceCache& scratch, std::span<const Point3> end)
     : model_(model), scratch_(scratch), end_(end) {
   // Says what is wrong with the points.
   surface_.emplace(model.surface(), end);

@@ -8,7 +8,7 @@
 
 #include <snug/query/linear_patches.h>
 #include <snug/query/trajectory.h>
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 #include <snug/time_of_contact.h>
 
 namespace snug {
@@ -22,11 +22,11 @@ class Deformation {
  public:
   /// Requires:  the model and the points outlive it.
   /// Errors:    InputError: those of LimitSurface::move(); (unrepresentable) if a velocity does not fit a double.
-  Deformation(const SurfaceBvh& model, SurfaceWorkspace& scratch, std::span<const Point3> end);
+  Deformation(const SurfaceBvh& model, PieceCache& scratch, std::span<const Point3> end);
 
   struct Shape {
     const SurfaceBvh& model;
-    SurfaceWorkspace& scratch;
+    PieceCache& scratch;
     double error;  ///< upper bound of the distance of its limit points from the exact ones, in mesh units
   };
   /// At s in [0, 1]; until the next call.
@@ -36,20 +36,20 @@ class Deformation {
 
  private:
   const SurfaceBvh& model_;
-  SurfaceWorkspace& scratch_;
+  PieceCache& scratch_;
   std::span<const Point3> end_;
   double largest_ = 0, speed_ = 0;
   double time_ = 0;  // of what follows
   SharedPlan plan_;
   std::optional<LimitSurface> surface_;
   std::optional<SurfaceBvh> moved_;
-  std::optional<SurfaceWorkspace> moved_scratch_;
+  std::optional<PieceCache> moved_scratch_;
 };
 
 /// A model that moves, with a workspace as in PlacedBvh.
 struct MovingBvh {
   const SurfaceBvh& model;  ///< at time 0
-  SurfaceWorkspace& scratch;
+  PieceCache& scratch;
   const Trajectory& motion;
   std::span<const Point3> end{};  ///< as in DeformingSurface
 };
@@ -61,7 +61,7 @@ class MovingBody {
   explicit MovingBody(const MovingBvh& moving);
 
   [[nodiscard]] const SurfaceBvh& model() const { return moving_.model; }
-  [[nodiscard]] SurfaceWorkspace& scratch() const { return moving_.scratch; }
+  [[nodiscard]] PieceCache& scratch() const { return moving_.scratch; }
   [[nodiscard]] bool deforms() const { return deformation_ != nullptr; }
   [[nodiscard]] double duration() const {
     return deforms() ? std::max(1.0, moving_.motion.duration()) : moving_.motion.duration();

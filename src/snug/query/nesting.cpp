@@ -177,7 +177,7 @@ std::optional<PatchId> wound_twice(const SurfaceBvh& model, const WorkMonitor& m
   patches.resize(std::min(patches.size(), max_components));
   const std::size_t spread = std::min(max_spread, surface.patch_count());
   for (std::size_t i = 0; i < spread; ++i) patches.emplace_back(i * surface.patch_count() / spread);
-  SurfaceWorkspace workspace(model);
+  PieceCache workspace(model);
   for (const PatchId p : patches) {
     for (const double way : {-inward, inward}) {
       for (const double share : {1.0, near_by}) {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include <snug/collide.h>
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 #include <snug/surface/evaluate.h>
 
 namespace snug {

@@ -12,22 +12,8 @@ constexpr double tiny = 0x1p-500;
 
 }  // namespace
 
-PiecePlace PiecePlace::child(unsigned child) const {
-  const double half = 0.5 / scale;
-  switch (child) {
-    case 0:
-      return {corner, 2 * scale};
-    case 1:
-      return {{corner.u + half, corner.v}, 2 * scale};
-    case 2:
-      return {{corner.u, corner.v + half}, 2 * scale};
-    default:
-      return {{corner.u + half, corner.v + half}, -2 * scale};
-  }
-}
-
-PieceQuadratic::PieceQuadratic(const QuadraticTriangle& near, const PiecePlace& place)
-    : place_(place), origin_(near.corners[0]), error_(near.error) {
+PieceQuadratic::PieceQuadratic(const QuadraticTriangle& near, const PiecePath& path)
+    : path_(path), origin_(near.corners[0]), error_(near.error) {
   const auto from = [&](const Point3& p) { return p - origin_; };
   const Vector3 corner_u = from(near.corners[1]), corner_v = from(near.corners[2]),
                 middle_u = from(near.middles[0]), middle_uv = from(near.middles[1]),
@@ -47,7 +33,7 @@ Vector3 PieceQuadratic::from_origin(TriangleParameter p) const {
 }
 
 Vector3 PieceQuadratic::bow(TriangleParameter a, TriangleParameter b) const {
-  const double du = (b.u - a.u) * place_.scale, dv = (b.v - a.v) * place_.scale;
+  const double du = (b.u - a.u) * path_.scale(), dv = (b.v - a.v) * path_.scale();
   return 0.25 * (du * du * uu_ + du * dv * uv_ + dv * dv * vv_);
 }
 
@@ -60,7 +46,7 @@ Flatness PieceQuadratic::flatness(const FlatTriangle& triangle) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3 off = triangle.corner[k] - origin_;
     size = std::max(size, max_abs(off));
-    gap[k] = from_origin(place_.local(triangle.at[k])) - off;
+    gap[k] = from_origin(path_.local(triangle.at[k])) - off;
   }
   double gap_sq = 0, sq = 0;
   Vector3 middles;

@@ -3,22 +3,9 @@
 #include <array>
 
 #include <snug/bounds/quadratic.h>
-#include <snug/geometry/triangle.h>
+#include <snug/patch/piece_path.h>
 
 namespace snug {
-
-/// Where a piece lies in its root patch: its parameter p is corner + p / scale of the patch's. The scale is a
-/// power of two, negative for a middle piece in an upright one.
-struct PiecePlace {
-  TriangleParameter corner;
-  double scale = 1;
-
-  [[nodiscard]] PiecePlace child(unsigned child) const;
-  /// A parameter of the patch as one of the piece.
-  [[nodiscard]] TriangleParameter local(TriangleParameter p) const {
-    return {(p.u - corner.u) * scale, (p.v - corner.v) * scale};
-  }
-};
 
 /// A triangle of the result: corners as they will be written, and their parameters on the root patch.
 struct FlatTriangle {
@@ -38,10 +25,9 @@ class PieceQuadratic {
  public:
   PieceQuadratic() = default;
   /// Requires:  finite points.
-  PieceQuadratic(const QuadraticTriangle& near, const PiecePlace& place);
+  PieceQuadratic(const QuadraticTriangle& near, const PiecePath& path);
 
   [[nodiscard]] double error() const { return error_; }
-  [[nodiscard]] const PiecePlace& place() const { return place_; }
   /// Upper bound of the distance of a flat triangle on this piece.
   ///
   /// Guarantee: Flatness::error, rounding included, for exactly these corners; it covers every point of the patch
@@ -55,7 +41,7 @@ class PieceQuadratic {
  private:
   [[nodiscard]] Vector3 from_origin(TriangleParameter local) const;
 
-  PiecePlace place_;
+  PiecePath path_;
   Point3 origin_;
   Vector3 u_, v_, uu_, uv_, vv_;
   double error_ = 0, size_ = 0;  // size_: sum of the largest coordinates of the vectors

@@ -49,7 +49,7 @@ class RaySearch {
     precision_ = surface.scale().apply(precision);
   }
 
-  [[nodiscard]] RayHits ask(SurfaceWorkspace& workspace, const Ray& ray) const {
+  [[nodiscard]] RayHits ask(PieceCache& workspace, const Ray& ray) const {
     require_ray(ray);
     const PowerOfTwo scale = surface_.scale();
     const RayScale lengths(ray.direction, scale);
@@ -87,7 +87,7 @@ class RaySearch {
         BoundedPoint{ray.origin + middle * ray.along, enlarged(half) + rounding}, surface_.scale().inverse());
     hit.point = require_representable(point.position);
     hit.error = require_representable(point.error);
-    hit.at = place_of(surface_, found.root, to_face(found.path, found.at));
+    hit.at = place_of(surface_, found.piece, found.at);
     hit.normal = evaluate(surface_, *hit.at).normal;
     return hit;
   }
@@ -102,7 +102,7 @@ class RaySearch {
 }  // namespace
 
 RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
-  SurfaceWorkspace& workspace = workspace_of(run).pieces().of(surface);
+  PieceCache& workspace = workspace_of(run).pieces().of(surface);
   const RayHits answer = RaySearch(workspace.model().surface(), options, run).ask(workspace, ray);
   certify(run, surface, {&ray, 1}, options.query, {&answer, 1});
   return answer;
@@ -115,8 +115,8 @@ std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, cons
   std::vector<RayHits> answers(rays.size());
   std::atomic<std::size_t> done{0};
   parallel_for_with(
-      rays.size(), run.threads, [&] { return SurfaceWorkspace(model); },
-      [&](SurfaceWorkspace& workspace, std::size_t begin, std::size_t end) {
+      rays.size(), run.threads, [&] { return PieceCache(model); },
+      [&](PieceCache& workspace, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) answers[i] = search.ask(workspace, rays[i]);
         monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
       });

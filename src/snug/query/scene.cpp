@@ -250,7 +250,7 @@ struct PairQuery {
   }
 };
 
-// Some answers of a thread, for copies of parts in one place, whose pairs differ in nothing but names.
+// Some answers, for copies of parts in one place, whose pairs differ in nothing but names.
 template <class Query, class Answer>
 class KnownAnswers {
  public:
@@ -279,7 +279,9 @@ Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions opti
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   options.margin = pair.margin;
   const auto query = query_of(a, b, options, run.max_splits);
-  thread_local KnownAnswers<std::remove_const_t<decltype(query)>, Collision> known;
+  auto& known =
+      workspace_of(run).pieces().kept<KnownAnswers<std::remove_const_t<decltype(query)>, Collision>>(
+          Workspace::Pieces::Kept::collisions);
   if (const Collision* const answer = known.find(query)) return *answer;
   const Collision answer = naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, run); });
   // Answers from the root boxes are cheaper to compute again than to keep.
@@ -293,7 +295,8 @@ std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, cons
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   const auto& [absolute, relative, solid] = options;
   const PairQuery query(a, b, pair.margin, run.max_splits, absolute, relative, solid);
-  thread_local KnownAnswers<std::remove_const_t<decltype(query)>, Distance> known;
+  auto& known = workspace_of(run).pieces().kept<KnownAnswers<std::remove_const_t<decltype(query)>, Distance>>(
+      Workspace::Pieces::Kept::distances);
   if (const Distance* const answer = known.find(query)) return *answer;
   return naming_parts(names_of(pair.parts), [&]() -> std::optional<Distance> {
     // A verdict finds pairs beyond the limit sooner than a distance does.

@@ -11,7 +11,9 @@
 #include <snug/query/self_near.h>
 #include <snug/query/self_pieces.h>
 #include <snug/search/crossing.h>
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
+#include <snug/search/frontier.h>
+#include <snug/search/gap.h>
 #include <snug/shape/star.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/level_complex.h>
@@ -57,57 +59,72 @@ double size_of(const Piece& piece) {
 }
 
 // Proves two pieces without a common corner to be apart, or some in them to cross.
-Found compare(SelfPieces& pieces, BoundsCache& library, const NamePair& whole, std::uint64_t budget) {
-  Found found;
-  std::vector<NamePair> stack{whole};
-  int attempts = 0;
-  while (!stack.empty()) {
-    const auto [a, b] = stack.back();
-    stack.pop_back();
-    const Piece& x = pieces.piece(a);
-    const Piece& y = pieces.piece(b);
-    ++found.tests;
+class PairComparison {
+ public:
+  PairComparison(PieceCache& pieces, std::uint64_t budget) : pieces_(pieces), budget_(budget) {}
+
+  Found run(const NamePair& whole) {
+    open_.start(Order::last_first, whole);
+    search(open_, *this);
+    return found_;
+  }
+
+  Verb look_at(const NamePair& pair) {
+    const auto& [a, b] = pair;
+    const Piece& x = pieces_.piece(a);
+    const Piece& y = pieces_.piece(b);
+    ++found_.tests;
     const NearestTriangles near = nearest(x.offset.base, y.offset.base);
-    const double gap = rounded_down(rounded_down(near.certain_distance - x.offset.radius) - y.offset.radius);
-    if (gap > 0) continue;
+    if (gap_of(near, x.offset.radius, y.offset.radius) > 0) return Verb::drop;
     const double size_x = size_of(x), size_y = size_of(y);
-    if (near.certain_distance == 0 && attempts < max_pair_attempts &&
+    if (near.certain_distance == 0 && attempts_ < max_pair_attempts &&
         x.offset.radius + y.offset.radius <= std::min(size_x, size_y) / 16) {
-      ++attempts;
-      if (const auto at = proved_crossing(library, x, y)) {
-        found.what = Found::What::crossing;
-        found.pieces = {a, b};
-        found.at = {clamped(at->on_a), clamped(at->on_b)};
-        return found;
+      ++attempts_;
+      if (const auto at = proved_crossing(pieces_.model().surface().library(), x, y)) {
+        set(Found::What::crossing, pair, {clamped(at->on_a), clamped(at->on_b)});
+        return Verb::stop;
       }
     }
-    const bool may_x = x.can_split() && a.splits < deepest, may_y = y.can_split() && b.splits < deepest;
-    if (found.tests >= budget || (!may_x && !may_y)) {
-      if (found.what == Found::What::apart) {
-        found.what = Found::What::unknown;
-        found.pieces = {a, b};
-        found.at = {clamped(near.on_a), clamped(near.on_b)};
-      }
-      // A crossing may still be found elsewhere, but not where rounding is all there is.
-      if (found.tests >= budget) return found;
-      continue;
-    }
-    const bool first = may_x && (!may_y || size_x >= size_y);
+    const bool may_x = x.can_split() && a.path.level() < deepest,
+               may_y = y.can_split() && b.path.level() < deepest;
+    first_ = may_x && (!may_y || size_x >= size_y);
+    if (found_.tests < budget_ && (may_x || may_y)) return Verb::open;
+    if (found_.what == Found::What::apart)
+      set(Found::What::unknown, pair, {clamped(near.on_a), clamped(near.on_b)});
+    // A crossing may still be found elsewhere, but not where rounding is all there is.
+    return found_.tests >= budget_ ? Verb::stop : Verb::drop;
+  }
+  void open(const NamePair& pair) {
+    const auto& [a, b] = pair;
     for (unsigned child = 4; child-- > 0;) {
-      stack.push_back(first ? NamePair{a.child(child), b} : NamePair{a, b.child(child)});
+      open_.add(first_ ? NamePair{a.child(child), b} : NamePair{a, b.child(child)});
     }
   }
-  return found;
-}
+
+ private:
+  void set(Found::What what, const NamePair& pair, const std::array<TriangleParameter, 2>& at) {
+    found_.what = what;
+    found_.pieces = pair;
+    found_.at = at;
+  }
+
+  PieceCache& pieces_;
+  std::uint64_t budget_;
+  Frontier<NamePair> open_;
+  Found found_;
+  int attempts_ = 0;
+  bool first_ = false;  // Is it the first piece that is to be opened?
+};
 
 class SelfSearch {
  public:
-  SelfSearch(const LimitSurface& surface, const SelfContactOptions& options, const Run& run)
-      : surface_(surface),
+  SelfSearch(const SurfaceBvh& model, const SelfContactOptions& options, const Run& run)
+      : model_(model),
+        surface_(model.surface()),
         options_(options),
         run_(run),
         monitor_(monitor_of(run)),
-        complex_(surface),
+        complex_(surface_),
         budget_(run.max_splits.value_or(default_splits::self_contact)) {
     if (options.within) {
       answer_.radius = options.radius.value_or(
@@ -153,7 +170,7 @@ class SelfSearch {
                            .levels = options_.levels + further_levels,
                            .threads = run_.threads};
     if (scale.exact(*options_.within)) wanted.tolerance = std::min(scale.apply(*options_.within), 64.0);
-    nearness_ = find_nearness(surface_, complex_, wanted, monitor_);
+    nearness_ = find_nearness(model_, complex_, wanted, monitor_);
     answer_.stars += nearness_.stars;
     answer_.pair_tests += nearness_.pair_tests;
     answer_.levels = std::max(answer_.levels, nearness_.levels);
@@ -162,13 +179,12 @@ class SelfSearch {
 
   // All pairs of the first level whose enclosures are near and that have no corner in common.
   std::vector<NamePair> far_pairs(const std::vector<PieceName>& pieces) {
-    const std::vector<QuadraticTriangle> sets = enclosures_of(surface_, pieces, run_.threads, monitor_);
-    const QuadraticBvh tree(sets, run_.threads);
+    const PieceSet sets = enclosures_of(model_, pieces, run_.threads, monitor_);
     std::vector<std::vector<NamePair>> found(pieces.size());
     parallel_for(pieces.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor_.checkpoint();
-        tree.for_each_near(sets[i], [&](std::uint32_t other) {
+        for_each_near(sets, sets[i], [&](std::uint32_t other) {
           if (other > i && !share_corner(complex_, pieces[i], pieces[other]))
             found[i].emplace_back(pieces[i], pieces[other]);
         });
@@ -211,8 +227,8 @@ class SelfSearch {
       return;
     }
     for_each_with_pieces(
-        surface_, proved.count(), run_.threads, monitor_,
-        [&](SelfPieces& pieces, std::size_t i) { proved.mark(i, star_holds(pieces, proved[i], level)); });
+        model_, proved.count(), run_.threads, monitor_,
+        [&](PieceCache& pieces, std::size_t i) { proved.mark(i, star_holds(pieces, proved[i], level)); });
     spend(proved.count());
     answer_.stars += proved.count();
     std::erase_if(live, [&](const NamePair& pair) {
@@ -220,7 +236,7 @@ class SelfSearch {
     });
   }
 
-  [[nodiscard]] bool star_holds(SelfPieces& pieces, const LevelVertex& vertex, unsigned level) const {
+  [[nodiscard]] bool star_holds(PieceCache& pieces, const LevelVertex& vertex, unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
     return star.fan && certainly_injective(sectors_of(pieces, star), star.closed);
   }
@@ -246,10 +262,9 @@ class SelfSearch {
     if (pairs.empty()) return;
     const std::uint64_t each = std::min(max_tests, budget_ / pairs.size());
     std::vector<Found> found(pairs.size());
-    for_each_with_pieces(
-        surface_, pairs.size(), run_.threads, monitor_, [&](SelfPieces& kept, std::size_t i) {
-          found[i] = compare(kept, surface_.library(), pairs[i], std::max<std::uint64_t>(each, 1));
-        });
+    for_each_with_pieces(model_, pairs.size(), run_.threads, monitor_, [&](PieceCache& kept, std::size_t i) {
+      found[i] = PairComparison(kept, std::max<std::uint64_t>(each, 1)).run(pairs[i]);
+    });
     for (const Found& one : found) {
       answer_.pair_tests += one.tests;
       spend(one.tests);
@@ -299,7 +314,7 @@ class SelfSearch {
                     const std::array<TriangleParameter, 2>& at) const {
     double error = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      const Place place = place_of(surface_, PatchId(names[s].patch), to_face(names[s].path(), at[s]));
+      const Place place = place_of(surface_, names[s], at[s]);
       pair.points[s] = evaluate(surface_, place);
       error += spatial_error(pair.points[s].error);
     }
@@ -312,9 +327,7 @@ class SelfSearch {
     pair.verdict = crossing_ ? SelfVerdict::intersecting : SelfVerdict::undecided;
     const double error = set_points(pair, {found.pieces.first, found.pieces.second}, found.at);
     if (!crossing_) {
-      const double apart = length(pair.points[1].point - pair.points[0].point);
-      pair.distance.upper =
-          enlarged(apart + error + gamma_bound(4) * max_abs(pair.points[0].point - Point3{}));
+      pair.distance.upper = distance_at_most(pair.points[1].point - pair.points[0].point, enlarged(error));
     }
     answer_.pairs.push_back(pair);
   }
@@ -329,6 +342,7 @@ class SelfSearch {
     answer_.pairs.push_back(pair);
   }
 
+  const SurfaceBvh& model_;
   const LimitSurface& surface_;
   const SelfContactOptions& options_;
   Run run_;
@@ -360,7 +374,7 @@ SelfContact self_contact(const Surface& surface, const SelfContactOptions& optio
         "self contact: the radius is less than twice 'within', where even flat places are near each other "
         "beyond it; give a longer one");
   }
-  return SelfSearch(surface.data()->limit(), options, run).run();
+  return SelfSearch(surface.data()->bvh(), options, run).run();
 }
 
 }  // namespace snug

@@ -16,7 +16,8 @@
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/self_pieces.h>
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
+#include <snug/search/gap.h>
 #include <snug/shape/patch_lengths.h>
 #include <snug/shape/star_distortion.h>
 #include <support/parallel.h>
@@ -42,16 +43,15 @@ struct Gap {
   double least = 0;
   std::array<TriangleParameter, 2> at;
 };
-Gap gap_of(const OffsetTriangle& a, const OffsetTriangle& b) {
+Gap gap_between(const OffsetTriangle& a, const OffsetTriangle& b) {
   const NearestTriangles near = nearest(a.base, b.base);
-  const double least = rounded_down(rounded_down(near.certain_distance - a.radius) - b.radius);
-  return {std::max(0.0, least), {clamped(near.on_a), clamped(near.on_b)}};
+  return {std::max(0.0, gap_of(near, a.radius, b.radius)), {clamped(near.on_a), clamped(near.on_b)}};
 }
 
 // An upper bound of the distance of two points of pieces.
-double distance_at_most(const Patch& a, const Patch& b, const std::array<TriangleParameter, 2>& at) {
+double distance_of_points(const Patch& a, const Patch& b, const std::array<TriangleParameter, 2>& at) {
   const BoundedPoint x = limit_point(a, at[0]).from(a.origin), y = limit_point(b, at[1]).from(b.origin);
-  return enlarged(length(y.position - x.position) + spatial_error(x.error) + spatial_error(y.error));
+  return distance_at_most(y.position - x.position, spatial_error(x.error) + spatial_error(y.error));
 }
 
 // The pieces of one level as a thread knows them, each with its neighbours.
@@ -77,8 +77,8 @@ class LevelPieces {
     double way = 0;
   };
 
-  LevelPieces(const LimitSurface& surface, const LevelComplex& complex, unsigned level)
-      : complex_(&complex), level_(level), pieces_(surface) {}
+  LevelPieces(const SurfaceBvh& model, const LevelComplex& complex, unsigned level)
+      : complex_(&complex), level_(level), pieces_(model) {}
 
   [[nodiscard]] const Piece& piece(const PieceName& name) { return pieces_.piece(name); }
   [[nodiscard]] Node& node(const PieceName& name) {
@@ -109,7 +109,7 @@ class LevelPieces {
   }
   // Where many have come together. What was returned is gone.
   void drop_many() {
-    pieces_.drop_many();
+    pieces_.begin(max_bytes_of_self);
     if (nodes_.size() < max_nodes) return;
     nodes_.clear();
     vertices_.clear();
@@ -121,7 +121,7 @@ class LevelPieces {
  private:
   const LevelComplex* complex_;
   unsigned level_;
-  SelfPieces pieces_;
+  PieceCache pieces_;
   std::unordered_map<PieceName, Node, PieceNameHash> nodes_;
   std::unordered_map<LevelVertex, Vertex, LevelVertexHash> vertices_;
   std::uint64_t searches_ = 0;
@@ -193,7 +193,7 @@ class Surroundings {
     const double distance = enlarged(0.5 * (longest + chord));
     centre_.gap = 0;
     const bool complete = spread(most, [&](LevelPieces::Node& node) {
-      node.gap = gap_of(centre_.offset, node.offset).least;
+      node.gap = gap_between(centre_.offset, node.offset).least;
       node.known_gap = pieces_.this_search();
       return node.gap <= distance;
     });
@@ -213,7 +213,7 @@ class Surroundings {
         // Of pieces that were not reached above the distance is not known, but more than that.
         if (node.known_gap != search) return false;
         return node.gap <= distance &&
-               node.gap + gap_of(partner.offset, node.offset).least <= enlarged(longest);
+               node.gap + gap_between(partner.offset, node.offset).least <= enlarged(longest);
       }) || (partner.seen == pieces_.this_search() && partner.within);
     }
     return may;
@@ -251,9 +251,9 @@ class Surroundings {
 
 class NearSearch {
  public:
-  NearSearch(const LimitSurface& surface, const LevelComplex& complex, const NearnessOptions& options,
+  NearSearch(const SurfaceBvh& model, const LevelComplex& complex, const NearnessOptions& options,
              const WorkMonitor& monitor)
-      : surface_(surface), complex_(complex), options_(options), monitor_(monitor), budget_(options.budget) {}
+      : model_(model), complex_(complex), options_(options), monitor_(monitor), budget_(options.budget) {}
 
   [[nodiscard]] Nearness run() {
     std::vector<NearPair> live = first_pairs();
@@ -282,8 +282,7 @@ class NearSearch {
   // All pairs of pieces that may be near each other, each piece with itself too.
   std::vector<NearPair> first_pairs() {
     const std::vector<PieceName> pieces = complex_.pieces();
-    const std::vector<QuadraticTriangle> sets = enclosures_of(surface_, pieces, options_.threads, monitor_);
-    const QuadraticBvh tree(sets, options_.threads);
+    const PieceSet sets = enclosures_of(model_, pieces, options_.threads, monitor_);
     std::vector<std::vector<NearPair>> found(pieces.size());
     std::atomic<std::uint64_t> count{0};
     parallel_for(pieces.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
@@ -292,7 +291,7 @@ class NearSearch {
         if (count.load(std::memory_order_relaxed) > budget_) return;
         QuadraticTriangle grown = sets[i];
         grown.error = enlarged(grown.error + options_.tolerance);
-        tree.for_each_near(grown, [&](std::uint32_t other) {
+        for_each_near(sets, grown, [&](std::uint32_t other) {
           if (other >= i) found[i].push_back({pieces[i], pieces[other]});
         });
         std::sort(found[i].begin(), found[i].end());
@@ -324,10 +323,10 @@ class NearSearch {
   // Those more than the tolerance apart.
   void drop_apart(std::vector<NearPair>& live) {
     std::vector<std::uint8_t> keep(live.size(), 0);
-    for_each_with_pieces(surface_, live.size(), options_.threads, monitor_,
-                         [&](SelfPieces& pieces, std::size_t i) {
+    for_each_with_pieces(model_, live.size(), options_.threads, monitor_,
+                         [&](PieceCache& pieces, std::size_t i) {
                            const Piece& a = pieces.piece(live[i].first);
-                           const Gap gap = gap_of(a.offset, pieces.piece(live[i].second).offset);
+                           const Gap gap = gap_between(a.offset, pieces.piece(live[i].second).offset);
                            keep[i] = gap.least <= options_.tolerance ? 1 : 0;
                          });
     spend(live.size());
@@ -347,8 +346,8 @@ class NearSearch {
       answer_.budget_spent = true;
       return;
     }
-    for_each_with_pieces(surface_, short_ways.count(), options_.threads, monitor_,
-                         [&](SelfPieces& pieces, std::size_t i) {
+    for_each_with_pieces(model_, short_ways.count(), options_.threads, monitor_,
+                         [&](PieceCache& pieces, std::size_t i) {
                            const double stretch = stretch_of(pieces, short_ways[i], level);
                            short_ways.mark(i, enlarged(stretch * options_.tolerance) <= options_.radius);
                          });
@@ -359,7 +358,7 @@ class NearSearch {
     });
   }
 
-  double stretch_of(SelfPieces& pieces, const LevelVertex& vertex, unsigned level) const {
+  double stretch_of(PieceCache& pieces, const LevelVertex& vertex, unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
     return star.fan ? star_distortion(sectors_of(pieces, star), star.closed) : INFINITY;
   }
@@ -379,7 +378,7 @@ class NearSearch {
     std::vector<std::uint8_t> keep(live.size(), 1);
     std::vector<std::optional<ProximityPair>> near(live.size());
     parallel_for_with(
-        count, options_.threads, [&] { return LevelPieces(surface_, complex_, level); },
+        count, options_.threads, [&] { return LevelPieces(model_, complex_, level); },
         [&](LevelPieces& pieces, std::size_t begin, std::size_t end) {
           for (std::size_t g = begin; g < end; ++g) {
             monitor_.checkpoint();
@@ -431,17 +430,17 @@ class NearSearch {
   template <class AnyPieces>
   static ProximityPair measured(AnyPieces& pieces, const NearPair& pair) {
     const Piece &a = pieces.piece(pair.first), &b = pieces.piece(pair.second);
-    const Gap gap = gap_of(a.offset, b.offset);
-    const double upper = distance_at_most(a.patch, b.patch, gap.at);
+    const Gap gap = gap_between(a.offset, b.offset);
+    const double upper = distance_of_points(a.patch, b.patch, gap.at);
     return {{pair.first, pair.second}, gap.at, {std::min(gap.least, upper), upper}};
   }
 
   void leave(const std::vector<NearPair>& live) {
     constexpr std::size_t enough = 100;
-    SelfPieces pieces(surface_);
+    PieceCache pieces(model_);
     for (const NearPair& pair : live) {
       if (answer_.unresolved.size() == enough) break;
-      pieces.drop_many();
+      pieces.begin(max_bytes_of_self);
       answer_.unresolved.push_back(measured(pieces, pair));
     }
   }
@@ -461,7 +460,7 @@ class NearSearch {
     return next;
   }
 
-  const LimitSurface& surface_;
+  const SurfaceBvh& model_;
   const LevelComplex& complex_;
   const NearnessOptions& options_;
   const WorkMonitor& monitor_;
@@ -471,9 +470,9 @@ class NearSearch {
 
 }  // namespace
 
-Nearness find_nearness(const LimitSurface& surface, const LevelComplex& complex,
-                       const NearnessOptions& options, const WorkMonitor& monitor) {
-  return NearSearch(surface, complex, options, monitor).run();
+Nearness find_nearness(const SurfaceBvh& model, const LevelComplex& complex, const NearnessOptions& options,
+                       const WorkMonitor& monitor) {
+  return NearSearch(model, complex, options, monitor).run();
 }
 
 }  // namespace snug

@@ -6,6 +6,7 @@
 
 #include <snug/geometry.h>
 #include <snug/run.h>
+#include <snug/search/surface_bvh.h>
 #include <snug/surface/level_complex.h>
 
 namespace snug {
@@ -41,7 +42,7 @@ struct Nearness {
 /// Requires:  0 < tolerance, 2 tolerance <= radius, both finite and at most about 1e100.
 /// Errors:    Interrupted.
 /// Source:    derivations/self_contact.md, "Nearness".
-[[nodiscard]] Nearness find_nearness(const LimitSurface& surface, const LevelComplex& complex,
+[[nodiscard]] Nearness find_nearness(const SurfaceBvh& model, const LevelComplex& complex,
                                      const NearnessOptions& options, const WorkMonitor& monitor);
 
 }  // namespace snug

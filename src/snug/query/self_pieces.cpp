@@ -4,48 +4,21 @@
 #include <cmath>
 
 #include <snug/geometry/rounding.h>
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
 #include <support/error.h>
 
 namespace snug {
-namespace {
-
-// That a thread keeps between two pairs or stars.
-constexpr std::size_t max_kept = 20'000;
-
-}  // namespace
-
-const Patch& SelfPieces::patch(const PieceName& name) {
-  if (const auto it = patches_.find(name); it != patches_.end()) return it->second;
-  Patch made =
-      name.splits == 0 ? surface_->patch(PatchId(name.patch)) : split(patch(name.parent()), name.digit());
-  return patches_.emplace(name, std::move(made)).first->second;
-}
-
-const Piece& SelfPieces::piece(const PieceName& name) {
-  if (const auto it = pieces_.find(name); it != pieces_.end()) return it->second;
-  Piece made = make_piece(surface_->library(), PatchId(name.patch), patch(name), scratch_);
-  return pieces_.emplace(name, std::move(made)).first->second;
-}
-
-bool SelfPieces::drop_many() {
-  if (patches_.size() + pieces_.size() < max_kept) return false;
-  patches_.clear();
-  pieces_.clear();
-  return true;
-}
-
-std::vector<StarSector> sectors_of(SelfPieces& pieces, const LevelStar& star) {
+std::vector<StarSector> sectors_of(PieceCache& pieces, const LevelStar& star) {
   for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
   std::vector<StarSector> sectors;
   for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
   return sectors;
 }
 
-std::vector<QuadraticTriangle> enclosures_of(const LimitSurface& surface, std::span<const PieceName> pieces,
-                                             int threads, const WorkMonitor& monitor) {
+PieceSet enclosures_of(const SurfaceBvh& model, std::span<const PieceName> pieces, int threads,
+                       const WorkMonitor& monitor) {
   std::vector<QuadraticTriangle> sets(pieces.size());
-  for_each_with_pieces(surface, pieces.size(), threads, monitor, [&](SelfPieces& kept, std::size_t i) {
+  for_each_with_pieces(model, pieces.size(), threads, monitor, [&](PieceCache& kept, std::size_t i) {
     const OffsetTriangle& offset = kept.piece(pieces[i]).offset;
     sets[i] = flat_quadratic(offset.base);
     sets[i].error = enlarged(sets[i].error + offset.radius);
@@ -56,7 +29,9 @@ std::vector<QuadraticTriangle> enclosures_of(const LimitSurface& surface, std::s
                        "a bound of a patch does not fit a double; move the mesh nearer to the origin");
     }
   }
-  return sets;
+  PieceSet result(std::move(sets));
+  result.prepare(threads);
+  return result;
 }
 
 bool share_corner(const LevelComplex& complex, const PieceName& a, const PieceName& b) {

@@ -184,7 +184,7 @@ double SweptPairs::height(const Sample& at, const Pair& pair, std::size_t side, 
   const Vector3 own = transposed_times(frame.rows, w);
   double most = reach(pair.boxes[side], own);
   if (node.bounded()) {
-    const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+    const PieceBounds& record = PieceCache::bounds_of(node);
     const double of_record = dot(own, node.boxes->origin() - Point3{}) + record.extent(own) +
                              (1 + 2 * frame.defect) * length_slack * record.error();
     most = std::min(most, of_record);
@@ -254,7 +254,7 @@ bool SweptPairs::apart_by_triangles(const Step& step, Pair& pair) {
   std::array<Triangle, 2> placed;
   for (std::size_t s = 0; s < 2; ++s) {
     const Node& node = pair.nodes[s];
-    const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+    const PieceBounds& record = PieceCache::bounds_of(node);
     placed[s] = record.base(node.boxes->origin());
     for (Point3& corner : placed[s]) corner = step.middle.frames[s].apply(corner);
     radii += scales_[s] * record.radius();
@@ -269,13 +269,13 @@ bool SweptPairs::apart_in_double(const Step& step, Pair& pair) {
   double size = 0;
   for (std::size_t s = 0; s < 2; ++s) {
     const Node& node = pair.nodes[s];
-    if (SurfaceWorkspace::can_open(node)) return false;
+    if (PieceCache::can_open(node)) return false;
     size = std::max(size, scales_[s] * static_cast<double>(node.size()));
   }
   if (pair.widest > near_for_single * size) return false;
   std::array<Triangle, 2> placed;
   for (std::size_t s = 0; s < 2; ++s) {
-    pair.triangles[s] = in_double(s, pair.nodes[s]);
+    pair.triangles[s] = bodies_[s].scratch.piece(pair.nodes[s]).offset;
     for (std::size_t k = 0; k < 3; ++k) {
       placed[s][k] = step.middle.frames[s].apply(pair.triangles[s].base[k]);
     }
@@ -288,13 +288,6 @@ bool SweptPairs::apart_in_double(const Step& step, Pair& pair) {
          apart_along(step, pair, normalized(between), neither);
 }
 
-OffsetTriangle SweptPairs::in_double(std::size_t side, const Node& node) {
-  if (node.kind != Node::Kind::patch) return bodies_[side].scratch.piece(node).offset;
-  const auto [known, is_new] = in_double_[side].try_emplace(bodies_[side].scratch.root_of(node).value());
-  if (is_new) known->second = bodies_[side].scratch.piece(node).offset;
-  return known->second;
-}
-
 // The larger one, if it is large for how far the nodes move against each other.
 std::size_t SweptPairs::side_to_open(const Step& step, const Pair& pair) const {
   std::size_t side = neither;
@@ -302,7 +295,7 @@ std::size_t SweptPairs::side_to_open(const Step& step, const Pair& pair) const {
   for (std::size_t s = 0; s < 2; ++s) {
     const Node& node = pair.nodes[s];
     speed += pair.heights.levers[s];
-    if (!SurfaceWorkspace::can_open(node) || (node.bounded() && bodies_[s].scratch.full())) continue;
+    if (!PieceCache::can_open(node) || (node.bounded() && bodies_[s].scratch.full())) continue;
     const double own = scales_[s] * static_cast<double>(node.size());
     if (side == neither || own > size) side = s;
     size = std::max(size, own);
@@ -312,7 +305,7 @@ std::size_t SweptPairs::side_to_open(const Step& step, const Pair& pair) const {
 
 void SweptPairs::open(const Nodes& nodes, std::size_t side, std::vector<Nodes>& out) {
   stats_.splits += nodes[side].bounded();
-  const SurfaceWorkspace::Opened opened = bodies_[side].scratch.open(nodes[side]);
+  const PieceCache::Opened opened = bodies_[side].scratch.open(nodes[side]);
   for (std::size_t place = 0; place < opened.count(); ++place) {
     out.push_back(nodes);
     out.back()[side] = opened.child(place);

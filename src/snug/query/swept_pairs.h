@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include <snug/query/swept_motion.h>
@@ -14,7 +13,7 @@ namespace snug {
 /// One of two surfaces during one piece of its motion.
 struct SweptBody {
   const SurfaceBvh& model;
-  SurfaceWorkspace& scratch;
+  PieceCache& scratch;
   const PieceMotion& motion;
 };
 
@@ -65,7 +64,6 @@ class SweptPairs {
   [[nodiscard]] bool apart(const Step& step, Pair& pair);
   [[nodiscard]] bool apart_by_triangles(const Step& step, Pair& pair);
   [[nodiscard]] bool apart_in_double(const Step& step, Pair& pair);
-  [[nodiscard]] OffsetTriangle in_double(std::size_t side, const Node& node);
   [[nodiscard]] std::size_t side_to_open(const Step& step, const Pair& pair) const;
   void open(const Nodes& nodes, std::size_t side, std::vector<Nodes>& out);
 
@@ -74,7 +72,6 @@ class SweptPairs {
   PowerOfTwo world_;
   std::array<double, 2> scales_{};
   std::array<SweptMotion, 2> motions_;
-  std::array<std::unordered_map<std::uint32_t, OffsetTriangle>, 2> in_double_;  // of whole patches
   double closing_ = 0;
   bool possible_ = false;
   double min_ = 0, until_ = 0;

@@ -49,7 +49,6 @@ struct Vertex {
 struct Tile {
   Index patch;
   PiecePath path;
-  PiecePlace place;
   bool known = false, coarse = false, thick = false;
   PieceQuadratic quadratic;
 };
@@ -197,7 +196,7 @@ void MeshRefinement::place_roots() {
   pieces_.reserve(roots.size());
   for (std::size_t t = 0; t < roots.size(); ++t) {
     piece_.push_back(static_cast<Index>(t));
-    pieces_.push_back({roots[t].value(), {}, {}, false, false, false, {}});
+    pieces_.push_back({roots[t].value(), {}, false, false, false, {}});
     for (std::size_t k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[complex_.corners(t)[k]];
       if (vertex.patch == UINT32_MAX) vertex = {{}, {}, 0, roots[t].value(), corners[k]};
@@ -289,7 +288,7 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   piece.known = true;
   if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
   piece.coarse = piece.thick || !(near.error <= tolerable_share * tolerance(t)) || !(near.error < INFINITY);
-  if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.place);
+  if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.path);
   if (!piece.coarse) return;
   const FlatTriangle triangle = flat(t);
   if (near.error < INFINITY) error_[t] = piece.quadratic.flatness(triangle).error;
@@ -479,7 +478,7 @@ void MeshRefinement::carry_out(const Cut& cut) {
     if (!pieces_[whole].coarse) continue;
     const Tile& parent = pieces_[whole];
     piece_[t] = cut.first_piece + i;
-    pieces_[piece_[t]] = {parent.patch, parent.path.child(i), parent.place.child(i), false, false, false, {}};
+    pieces_[piece_[t]] = {parent.patch, parent.path.child(i), false, false, false, {}};
   }
 }
 

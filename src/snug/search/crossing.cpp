@@ -208,17 +208,21 @@ bool proves_crossing(PairFrames& frames, const PiecePair& pieces) {
   const std::optional<PairOfPoints> middle = middle_of_contact(pieces.base[0], pieces.base[1]);
   if (!middle) return false;
   const std::array<Barycentric, 2> at{middle->on_a, middle->on_b};
+  thread_local BoundingPoints points;
   std::array<Piece, 2> whole;
   std::array<Heights, 2> heights;
   for (std::size_t s = 0; s < 2; ++s) {
-    SurfaceWorkspace& workspace = frames.workspace(s);
-    whole[s] = workspace.piece(pieces.nodes[s]);
-    heights[s] = workspace.model().method() == BoundMethod::table ? heights_of(whole[s].offset)
-                                                                  : heights_of(whole[s], workspace.points());
+    PieceCache& cache = frames.cache(s);
+    const SurfaceBvh& model = cache.model();
+    const PatchId root = cache.name(pieces.nodes[s]).patch;
+    whole[s] =
+        make_piece(model.surface().library(), root, cache.patch(pieces.nodes[s]), points, model.method());
+    heights[s] =
+        model.method() == BoundMethod::table ? heights_of(whole[s].offset) : heights_of(whole[s], points);
   }
   for (std::size_t s = 0; s < 2; ++s) {
     const CrossingTest crossed(whole[s], heights[s]);
-    const SurfaceBvh& other = frames.workspace(1 - s).model();
+    const SurfaceBvh& other = frames.cache(1 - s).model();
     if (crossed.possible() && crosses_near({other.surface().library(), other.method()}, whole[1 - s],
                                            clamped(at[1 - s]), crossed, frames.view(s).frame)) {
       return true;

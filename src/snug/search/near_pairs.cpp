@@ -11,7 +11,7 @@ constexpr float max_doubt = 0x1p-7F;
 }  // namespace
 
 NearPairs::NearPairs(PairFrames& frames, SearchStats& stats, double distance)
-    : stats_(stats), model_{&frames.workspace(0).model(), &frames.workspace(1).model()} {
+    : stats_(stats), model_{&frames.cache(0).model(), &frames.cache(1).model()} {
   for (std::size_t s = 0; s < 2; ++s) {
     const View& view = frames.view(s);
     usable_ = usable_ && view.frame.comparable;

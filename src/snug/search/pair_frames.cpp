@@ -141,12 +141,12 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
 }
 
 PairFrames::PairFrames(const PlacedBvh& a, const PlacedBvh& b)
-    : workspace_{&a.scratch, &b.scratch},
+    : cache_{&a.scratch, &b.scratch},
       world_(joint_scale(a, b)),
       frame_{frame_of(a, world_), frame_of(b, world_)} {
   require_value(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model,
                 "pair of models: each needs a scratch of its own, made for it");
-  for (SurfaceWorkspace* workspace : workspace_) workspace->begin();
+  for (PieceCache* cache : cache_) cache->begin();
 }
 
 double PairFrames::length_down(double mesh_units) const {

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 
 namespace snug {
 
@@ -11,7 +11,7 @@ namespace snug {
 /// units, in which both are at most about 2 large and far.
 class PairFrames {
  public:
-  /// Errors:    InputError (value) unless each has a workspace of its own.
+  /// Errors:    InputError (value) unless each has a cache of its own.
   PairFrames(const PlacedBvh& a, const PlacedBvh& b);
 
   /// From mesh units; a lower bound and an upper bound of the exact length.
@@ -19,7 +19,7 @@ class PairFrames {
   [[nodiscard]] double length_up(double mesh_units) const;
   [[nodiscard]] PowerOfTwo to_mesh_units() const { return world_.inverse(); }
 
-  [[nodiscard]] SurfaceWorkspace& workspace(std::size_t side) const { return *workspace_[side]; }
+  [[nodiscard]] PieceCache& cache(std::size_t side) const { return *cache_[side]; }
   [[nodiscard]] const PlacedFrame& frame(std::size_t side) const { return frame_[side]; }
   /// How the other side is seen from the frame of `side`; made on first use.
   [[nodiscard]] const View& view(std::size_t side) {
@@ -30,7 +30,7 @@ class PairFrames {
   void look_along(const Vector3& direction);
 
  private:
-  std::array<SurfaceWorkspace*, 2> workspace_;
+  std::array<PieceCache*, 2> cache_;
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
   std::array<std::optional<View>, 2> view_;

@@ -13,23 +13,28 @@ PairWalk::PairWalk(PairFrames& frames, SearchStats& stats, WideNode::Gaps gaps)
       gaps_(gaps),
       scale_{static_cast<float>(frames.frame(0).scale), static_cast<float>(frames.frame(1).scale)} {}
 
-NodePair PairWalk::roots() const {
-  return {{frames_.workspace(0).root(), frames_.workspace(1).root()}, -INFINITY};
-}
+NodePair PairWalk::roots() const { return {{frames_.cache(0).root(), frames_.cache(1).root()}, -INFINITY}; }
 
-PairWalk::Opening PairWalk::opening(const NodePair& pair) const {
+std::size_t PairWalk::side_to_open(const NodePair& pair) const {
   const auto& [a, b] = pair.nodes;
-  const bool can_a = SurfaceWorkspace::can_open(a), can_b = SurfaceWorkspace::can_open(b);
-  if (can_a && can_b) return size(pair, 1) > size(pair, 0) ? Opening::b : Opening::a;
-  return can_a ? Opening::a : can_b ? Opening::b : Opening::none;
+  const bool can_a = PieceCache::can_open(a), can_b = PieceCache::can_open(b);
+  if (can_a && can_b) return size(pair, 1) > size(pair, 0) ? 1 : 0;
+  return can_a ? 0 : can_b ? 1 : neither;
 }
 
-float PairWalk::open(const NodePair& pair, Opening opening, double prune_distance,
-                     std::vector<NodePair>& out) {
-  const std::size_t side = opening == Opening::b ? 1 : 0;
+PairWalk::May PairWalk::may(const NodePair& pair, std::uint64_t budget) const {
+  const std::size_t side = side_to_open(pair);
+  if (side == neither) return May::not_open;
+  const bool splits = pair.nodes[side].bounded();
+  const bool spent = stats_.splits >= budget || frames_.cache(0).full() || frames_.cache(1).full();
+  return splits && spent ? May::end : May::open;
+}
+
+float PairWalk::open(const NodePair& pair, double prune_distance, std::vector<NodePair>& out) {
+  const std::size_t side = side_to_open(pair);
   const Node &node = pair.nodes[side], other = pair.nodes[1 - side];
   stats_.splits += node.bounded();
-  const SurfaceWorkspace::Opened opened = frames_.workspace(side).open(node);
+  const PieceCache::Opened opened = frames_.cache(side).open(node);
   stats_.box_tests += opened.count();
   const View& view = frames_.view(side);
   const float parent_gap = pair.gap > 0 ? pair.gap : -INFINITY;

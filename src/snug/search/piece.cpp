@@ -11,18 +11,17 @@
 
 namespace snug {
 
+OffsetTriangle offset_of(BoundsCache& library, const Patch& patch, BoundingPoints& scratch,
+                         BoundMethod method) {
+  if (method == BoundMethod::table) return offset_triangle(table_triangle(library.table(*patch.kind), patch));
+  bounding_points(library, patch, scratch);
+  return offset_triangle(library, scratch, limit_corners(patch));
+}
+
 Piece make_piece(BoundsCache& library, PatchId root, Patch patch, BoundingPoints& scratch,
                  BoundMethod method) {
-  Piece piece;
-  piece.root = root;
-  if (method == BoundMethod::table) {
-    piece.offset = offset_triangle(table_triangle(library.table(*patch.kind), patch));
-  } else {
-    bounding_points(library, patch, scratch);
-    piece.offset = offset_triangle(library, scratch, limit_corners(patch));
-  }
-  piece.patch = std::move(patch);
-  return piece;
+  const OffsetTriangle offset = offset_of(library, patch, scratch, method);
+  return {root, std::move(patch), offset};
 }
 
 Piece child_of(BoundsCache& library, const Piece& piece, unsigned child, BoundingPoints& scratch,

@@ -24,7 +24,10 @@ struct Piece {
   [[nodiscard]] bool can_split() const { return snug::can_split(patch, offset); }
 };
 
-/// A piece made from a patch: its offset triangle is fitted to bounding rows, in `scratch`, or comes from tables.
+/// The offset triangle of a patch: fitted to bounding rows, which are left in `scratch`, or from tables.
+[[nodiscard]] OffsetTriangle offset_of(BoundsCache& library, const Patch& patch, BoundingPoints& scratch,
+                                       BoundMethod method);
+/// A piece made from a patch.
 [[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, BoundingPoints& scratch,
                                BoundMethod method = BoundMethod::rows);
 /// One of the four children of a piece.

@@ -5,6 +5,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/gap.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -12,7 +13,7 @@ namespace snug {
 PiecePair PiecePairs::nearest(const NodePair& pair) {
   std::array<OffsetTriangle, 2> offsets;
   for (std::size_t s = 0; s < 2; ++s) {
-    const PieceBounds& record = SurfaceWorkspace::bounds_of(pair.nodes[s]);
+    const PieceBounds& record = PieceCache::bounds_of(pair.nodes[s]);
     offsets[s] = {record.base(pair.nodes[s].boxes->origin()), record.radius()};
   }
   PiecePair pieces = nearest(pair, offsets);
@@ -22,17 +23,17 @@ PiecePair PiecePairs::nearest(const NodePair& pair) {
 
 bool PiecePairs::at_single_precision(const NodePair& pair) {
   const auto& [a, b] = pair.nodes;
-  const bool can_a = SurfaceWorkspace::can_open(a), can_b = SurfaceWorkspace::can_open(b);
+  const bool can_a = PieceCache::can_open(a), can_b = PieceCache::can_open(b);
   if (can_a == can_b) return !can_a;
-  const double fixed = SurfaceWorkspace::bounds_of(can_a ? b : a).radius(),
-               other = SurfaceWorkspace::bounds_of(can_a ? a : b).radius();
+  const double fixed = PieceCache::bounds_of(can_a ? b : a).radius(),
+               other = PieceCache::bounds_of(can_a ? a : b).radius();
   return other <= fixed;
 }
 
 PiecePair PiecePairs::nearest_in_double(const NodePair& pair) {
   std::array<OffsetTriangle, 2> offsets;
   for (std::size_t s = 0; s < 2; ++s) {
-    offsets[s] = frames_.workspace(s).piece(pair.nodes[s]).offset;
+    offsets[s] = frames_.cache(s).piece(pair.nodes[s]).offset;
   }
   PiecePair pieces = nearest(pair, offsets);
   const Witness exact = witness(pieces);
@@ -54,7 +55,7 @@ PiecePair PiecePairs::nearest(const NodePair& pair, const std::array<OffsetTrian
         enlarged(offsets[s].radius * frame.growth() + spatial_error(frame.largest_apply_error()));
   }
   pieces.near = snug::nearest(pieces.base[0], pieces.base[1]);
-  const double gap = rounded_down(pieces.near.certain_distance - enlarged(pieces.radii[0] + pieces.radii[1]));
+  const double gap = gap_of(pieces.near, pieces.radii[0], pieces.radii[1]);
   pieces.gap = std::max({gap, static_cast<double>(pair.gap), 0.0});
 
   pieces.at = {clamped(pieces.near.on_a), clamped(pieces.near.on_b)};
@@ -63,7 +64,7 @@ PiecePair PiecePairs::nearest(const NodePair& pair, const std::array<OffsetTrian
 
 Point3 PiecePairs::quadratic_point(const PiecePair& pieces, std::size_t side, TriangleParameter at) const {
   const Node& node = pieces.nodes[side];
-  return frames_.frame(side).apply(node.boxes->origin() + SurfaceWorkspace::bounds_of(node).at(at));
+  return frames_.frame(side).apply(node.boxes->origin() + PieceCache::bounds_of(node).at(at));
 }
 
 void PiecePairs::set_points(PiecePair& pieces) const {
@@ -73,15 +74,13 @@ void PiecePairs::set_points(PiecePair& pieces) const {
     const PlacedFrame& frame = frames_.frame(s);
     pieces.points[s] = quadratic_point(pieces, s, pieces.at[s]);
     // The sum with the origin is rounded once, too.
-    const double error = enlarged(frame.growth() * SurfaceWorkspace::bounds_of(pieces.nodes[s]).error() +
+    const double error = enlarged(frame.growth() * PieceCache::bounds_of(pieces.nodes[s]).error() +
                                   2 * spatial_error(frame.largest_apply_error()));
     pieces.error = std::max(pieces.error, error);
     errors += error;
   }
   pieces.between = pieces.points[1] - pieces.points[0];
-  pieces.near_distance = enlarged(errors) + (std::sqrt(length_sq(pieces.between) + 8 * underflow_error) +
-                                             8 * unit_roundoff * max_abs(pieces.between)) *
-                                                (1 + 16 * unit_roundoff);
+  pieces.near_distance = distance_at_most(pieces.between, enlarged(errors));
 }
 
 void PiecePairs::approach(PiecePair& pieces) const {
@@ -111,7 +110,7 @@ void PiecePairs::approach(PiecePair& pieces) const {
 void PiecePairs::step_together(PiecePair& pieces, const Vector3& between) const {
   std::array<Vector3, 4> by;
   for (std::size_t s = 0; s < 2; ++s) {
-    const PieceBounds& record = SurfaceWorkspace::bounds_of(pieces.nodes[s]);
+    const PieceBounds& record = PieceCache::bounds_of(pieces.nodes[s]);
     const PlacedFrame& frame = frames_.frame(s);
     const double factor = (s == 0 ? -1 : 1) * frame.scale;
     const std::array<Vector3, 2> own = record.derivatives(pieces.at[s]);
@@ -136,7 +135,7 @@ void PiecePairs::step_together(PiecePair& pieces, const Vector3& between) const 
 
 double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vector3& w) const {
   const PlacedFrame& frame = frames_.frame(side);
-  const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
+  const PieceBounds& record = PieceCache::bounds_of(node);
   const Point3 origin = frame.apply(node.boxes->origin());
   // w . (scale R x) = scale (R' w) . x
   const double own = frame.scale * record.extent(transposed_times(frame.rows, w));
@@ -151,12 +150,12 @@ double PiecePairs::gap_along(const std::array<Node, 2>& nodes, const Vector3& di
   const Vector3 w = normalized(direction);
   if (w == Vector3{}) return 0;
   const double taken = placed_extent(0, nodes[0], w) + placed_extent(1, nodes[1], -w);
-  return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
+  return std::max(0.0, gap_of_planes(taken));
 }
 
 void PiecePairs::look_along(const Vector3& direction) {
   along_ = normalized(direction);
-  for (std::size_t s = 0; s < 2; ++s) directions_[s] = frames_.workspace(s).extents().next_direction();
+  for (std::size_t s = 0; s < 2; ++s) directions_[s] = frames_.cache(s).extents().next_direction();
   frames_.look_along(along_);
 }
 
@@ -164,10 +163,10 @@ double PiecePairs::gap_along(const std::array<Node, 2>& nodes) {
   if (along_ == Vector3{}) return 0;
   double taken = 0;
   for (std::size_t s = 0; s < 2; ++s) {
-    taken += frames_.workspace(s).extents().of(
+    taken += frames_.cache(s).extents().of(
         nodes[s], directions_[s], [&] { return placed_extent(s, nodes[s], s == 0 ? along_ : -along_); });
   }
-  return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
+  return std::max(0.0, gap_of_planes(taken));
 }
 
 Witness PiecePairs::witness(const PiecePair& pieces) {
@@ -175,17 +174,13 @@ Witness PiecePairs::witness(const PiecePair& pieces) {
   Witness found;
   found.at = pieces.at;
   for (std::size_t s = 0; s < 2; ++s) {
-    const Patch& patch = frames_.workspace(s).patch(pieces.nodes[s]);
+    const Patch& patch = frames_.cache(s).patch(pieces.nodes[s]);
     found.nodes[s] = pieces.nodes[s];
     const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, found.at[s]).from(patch.origin));
     found.points[s] = point.position;
     found.error = std::max(found.error, point.error);
   }
-  const Vector3 between = found.points[1] - found.points[0];
-  // Not enlarged(): of surfaces far apart that would be more than all else.
-  found.distance = (std::sqrt(length_sq(between) + 8 * underflow_error) + 2 * spatial_error(found.error) +
-                    8 * unit_roundoff * max_abs(between)) *
-                   (1 + 16 * unit_roundoff);
+  found.distance = distance_at_most(found.points[1] - found.points[0], 2 * spatial_error(found.error));
   return found;
 }
 
@@ -201,12 +196,10 @@ WitnessPoints PiecePairs::limit_points(const Witness& witness) const {
   const PowerOfTwo back = frames_.to_mesh_units();
   WitnessPoints points;
   for (std::size_t s = 0; s < 2; ++s) {
-    SurfaceWorkspace& workspace = frames_.workspace(s);
-    const Patch& patch = workspace.patch(witness.nodes[s]);
+    PieceCache& cache = frames_.cache(s);
     points[s] = {require_representable(back.apply(witness.points[s])),
                  unscaled_up(witness.error, back) + underflow_error,
-                 place_of(workspace.model().surface(), workspace.root_of(witness.nodes[s]),
-                          to_face(patch.path, witness.at[s]))};
+                 place_of(cache.model().surface(), cache.name(witness.nodes[s]), witness.at[s])};
   }
   return points;
 }

@@ -87,7 +87,7 @@ class PiecePairs {
   PairFrames& frames_;
   SearchStats& stats_;
   Vector3 along_;                              // of length 1, or zero
-  std::array<std::uint64_t, 2> directions_{};  // its numbers in the workspaces
+  std::array<std::uint64_t, 2> directions_{};  // its numbers in the caches
 };
 
 }  // namespace snug

@@ -46,7 +46,7 @@ std::vector<OrderedPoint> spatial_order(std::span<const Point3> points) {
 }  // namespace
 
 void for_each_point(const Surface& surface, std::span<const Point3> points, const Run& run,
-                    const std::function<void(SurfaceWorkspace&, std::size_t)>& ask) {
+                    const std::function<void(PieceCache&, std::size_t)>& ask) {
   const std::vector<OrderedPoint> order = spatial_order(points);
   const std::size_t step = 1 + points.size() / 1000;
   std::atomic<std::size_t> done{0};

@@ -14,6 +14,6 @@ namespace snug {
 /// Requires:  fewer than 2^32 points. Those that are not finite may come anywhere.
 /// Errors:    what `ask` throws ends the loop and is thrown again, of several one; Interrupted.
 void for_each_point(const Surface& surface, std::span<const Point3> points, const Run& run,
-                    const std::function<void(SurfaceWorkspace&, std::size_t)>& ask);
+                    const std::function<void(PieceCache&, std::size_t)>& ask);
 
 }  // namespace snug

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include <snug/search/surface_workspace.h>
 #include <support/error.h>
-#include <support/ordering.h>
 
 namespace snug {
 
@@ -61,31 +58,6 @@ class DistanceBounds {
  private:
   double absolute_, relative_;
   double upper_ = INFINITY, pruned_ = INFINITY, floor_ = 0;
-};
-
-/// Queue of items to open, ordered by a lower bound `gap` of their distance, nearest first.
-template <class Item>
-class NearestFirst {
- public:
-  /// Begins anew, with memory kept.
-  void start(const Item& root) { items_.assign(1, root); }
-  [[nodiscard]] bool empty() const { return items_.empty(); }
-  /// Requires:  not empty; so does take().
-  [[nodiscard]] const Item& nearest() const { return items_.front(); }
-  Item take() {
-    ordering::pop_heap(items_.data(), items_.size(), farther);
-    const Item item = items_.back();
-    items_.pop_back();
-    return item;
-  }
-  void add(const Item& item) {
-    items_.push_back(item);
-    ordering::push_heap(items_.data(), items_.size(), farther);
-  }
-
- private:
-  static bool farther(const Item& x, const Item& y) { return x.gap > y.gap; }
-  std::vector<Item> items_;
 };
 
 }  // namespace snug

@@ -55,11 +55,11 @@ struct Leaf {
 
 class RayWalk {
  public:
-  RayWalk(SurfaceWorkspace& workspace, const RayTask& task, const WorkMonitor& monitor)
-      : workspace_(workspace), surface_(workspace.model().surface()), task_(task), monitor_(monitor) {}
+  RayWalk(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor)
+      : cache_(cache), surface_(cache.model().surface()), task_(task), monitor_(monitor) {}
 
   FoundHits run() {
-    workspace_.begin();
+    cache_.begin();
     if (!clip()) return {{}, bounded_};
     if (quick()) return std::move(found_);
     FoundHits best;
@@ -96,7 +96,7 @@ class RayWalk {
  private:
   // The part of the ray that comes near the surface; false if there is none, or none that is bounded.
   bool clip() {
-    const Ball& ball = workspace_.model().tree().ball();
+    const Ball& ball = cache_.model().tree().ball();
     const Vector3 from = ball.centre - task_.ray.origin;
     const double middle = dot(task_.ray.along, from);
     far_ = max_abs(from);
@@ -115,14 +115,14 @@ class RayWalk {
   }
 
   void start() {
-    open_.start({workspace_.root(), -INFINITY});
+    open_.start(Order::nearest_first, {cache_.root(), -INFINITY});
     found_ = {};
   }
 
-  // Adds what a node, none of which comes before `least`, opens to, unless it is farther than `reach` from the
+  // Adds what a node opens to, none of it before the node's own begin, unless it is farther than `reach` from the
   // line or behind `end`.
-  void open(const Node& node, float least, double reach, double end) {
-    const SurfaceWorkspace::Opened opened = workspace_.open(node);
+  void open(const NodeGap& at, double reach, double end) {
+    const PieceCache::Opened opened = cache_.open(at.node);
     WideNode::Distances gaps, ahead;
     opened.boxes->distances(segment_, rounding_, 0, gaps);
     opened.boxes->extents(-task_.ray.along, ahead);
@@ -133,7 +133,7 @@ class RayWalk {
       if (begin > end) continue;
       // Rounded down, whatever its sign.
       const auto lower = static_cast<float>(begin - 0x1p-22 * std::fabs(begin));
-      open_.add({opened.child(i), std::max(least, lower)});
+      open_.add({opened.child(i), std::max(at.gap, lower)});
     }
   }
 
@@ -147,11 +147,11 @@ class RayWalk {
   // Also pieces that are as flat as doubles can resolve: their bounds are in single precision, relative to their
   // size.
   [[nodiscard]] bool can_open(const Node& node) {
-    return SurfaceWorkspace::can_open(node) || workspace_.patch(node).path.level() < PiecePath::max_level;
+    return PieceCache::can_open(node) || cache_.patch(node).path.level() < PiecePath::max_level;
   }
 
   [[nodiscard]] SeenPiece seen(const Node& node) const {
-    return {task_.ray, SurfaceWorkspace::bounds_of(node), node.boxes->origin()};
+    return {task_.ray, PieceCache::bounds_of(node), node.boxes->origin()};
   }
 
   [[nodiscard]] bool is_located(const Extent& along) const {
@@ -164,40 +164,52 @@ class RayWalk {
   }
 
   void add_hit(const Node& node, const Extent& along, bool certified, int side, TriangleParameter at) {
-    found_.hits.push_back({along, certified, is_located(along), side, workspace_.root_of(node),
-                           workspace_.patch(node).path, at});
+    found_.hits.push_back({along, certified, is_located(along), side, cache_.name(node), at});
   }
 
-  // Hits that pieces prove each by itself. False where that is not enough.
+  // Hits that pieces prove each by itself.
+  struct Quick {
+    RayWalk& walk;
+    double end;          // nothing behind it matters
+    bool enough = true;  // Are they?
+
+    Verb look_at(const NodeGap& at) {
+      const auto& [node, begin] = at;
+      if (static_cast<double>(begin) > end) return Verb::stop;
+      if (!node.bounded()) return Verb::open;
+      const RayTask& task = walk.task_;
+      walk.monitor_.checkpoint();
+      const SeenPiece piece = walk.seen(node);
+      const LinePieceCrossing crossing = piece.crossing({}, 0, task.precision);
+      if (crossing.state == CrossingState::none || walk.outside(crossing.along, end)) return Verb::drop;
+      const bool hit = crossing.state == CrossingState::one && walk.within(crossing.along);
+      if (hit) {
+        const bool narrow = walk.is_located(crossing.along);
+        if (narrow || task.query == RayQuery::any) {
+          walk.add_hit(node, crossing.along, true, crossing.side, crossing.at);
+        }
+        if (task.query == RayQuery::any) return Verb::stop;
+        if (task.query == RayQuery::nearest) end = std::min(end, crossing.along.upper);
+        if (narrow) return Verb::drop;
+      }
+      const double off = crossing.limited_by_errors ? piece.error() : piece.width();
+      const bool small = !hit && off <= first_share / 8 * task.precision;
+      enough = !small && walk.can_open(node) && walk.splits_ < std::min(quick_splits, task.budget);
+      if (!enough) return Verb::stop;
+      ++walk.splits_;
+      return Verb::open;
+    }
+    void open(const NodeGap& at) { walk.open(at, 0, end); }
+  };
+
+  // False where these are not enough.
   bool quick() {
     start();
-    double end = upper_;
-    while (!open_.empty()) {
-      const auto [node, begin] = open_.take();
-      if (static_cast<double>(begin) > end) break;
-      if (node.bounded()) {
-        monitor_.checkpoint();
-        const SeenPiece piece = seen(node);
-        const LinePieceCrossing crossing = piece.crossing({}, 0, task_.precision);
-        if (crossing.state == CrossingState::none || outside(crossing.along, end)) continue;
-        const bool hit = crossing.state == CrossingState::one && within(crossing.along);
-        if (hit) {
-          const bool narrow = is_located(crossing.along);
-          if (narrow || task_.query == RayQuery::any) {
-            add_hit(node, crossing.along, true, crossing.side, crossing.at);
-          }
-          if (task_.query == RayQuery::any) return true;
-          if (task_.query == RayQuery::nearest) end = std::min(end, crossing.along.upper);
-          if (narrow) continue;
-        }
-        const double off = crossing.limited_by_errors ? piece.error() : piece.width();
-        const bool small = !hit && off <= first_share / 8 * task_.precision;
-        if (small || !can_open(node) || splits_ >= std::min(quick_splits, task_.budget)) return false;
-        ++splits_;
-      }
-      open(node, begin, 0, end);
-    }
-    if (task_.query == RayQuery::nearest) keep_nearest(end);
+    Quick question{*this, upper_};
+    search(open_, question);
+    if (!question.enough) return false;
+    if (task_.query == RayQuery::any) return true;
+    if (task_.query == RayQuery::nearest) keep_nearest(question.end);
     sort_hits();
     return true;
   }
@@ -227,43 +239,53 @@ class RayWalk {
               [](const FoundHit& x, const FoundHit& y) { return x.along.lower < y.along.lower; });
   }
 
-  // Collects all pieces within `reach` of the line, known up to `fine` or thinner, in groups that are apart along it.
+  // All pieces within `reach` of the line, known up to `fine` or thinner, in groups that are apart along it.
+  struct Tube {
+    RayWalk& walk;
+    double reach, fine;
+    double end_of_group = -INFINITY;
+
+    Verb look_at(const NodeGap& at) {
+      const auto& [node, begin] = at;
+      // What comes first begins behind all of the group.
+      if (!walk.leaves_.empty() && static_cast<double>(begin) > end_of_group) {
+        walk.resolve_leaves(reach);
+        end_of_group = -INFINITY;
+        if (walk.done_) return Verb::stop;
+      }
+      if (static_cast<double>(begin) > walk.upper_ + reach) return Verb::stop;
+      if (!node.bounded()) return Verb::open;
+      walk.monitor_.checkpoint();
+      const SeenPiece piece = walk.seen(node);
+      LinePieceCrossing near = piece.crossing({}, reach);
+      if (near.state == CrossingState::none) return Verb::drop;
+      // Its boxes begin there, so that groups follow one another.
+      near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
+      if (near.along.upper < near.along.lower || walk.outside(near.along, walk.upper_ + reach)) {
+        return Verb::drop;
+      }
+      const double off = near.limited_by_errors ? piece.error() : piece.width() + 2 * piece.error();
+      const bool out_of_budget = walk.splits_ >= walk.task_.budget || walk.cache_.full();
+      if (out_of_budget) walk.found_.complete = false;
+      if (out_of_budget || off <= fine || !walk.can_open(node)) {
+        walk.leaves_.push_back({piece, piece.crossing({}, 0), near.along, node});
+        end_of_group = std::max(end_of_group, near.along.upper);
+        return out_of_budget ? Verb::stop : Verb::drop;
+      }
+      ++walk.splits_;
+      return Verb::open;
+    }
+    void open(const NodeGap& at) { walk.open(at, reach, walk.upper_ + reach); }
+  };
+
   // True if each group is crossed for certain.
   bool search_tube(double reach, double fine) {
     start();
     leaves_.clear();
     resolved_ = true;
     done_ = false;
-    double end_of_group = -INFINITY;
-    while (!open_.empty() && !done_) {
-      if (!leaves_.empty() && static_cast<double>(open_.nearest().gap) > end_of_group) {
-        resolve_leaves(reach);
-        end_of_group = -INFINITY;
-        continue;
-      }
-      const auto [node, begin] = open_.take();
-      if (static_cast<double>(begin) > upper_ + reach) break;
-      if (node.bounded()) {
-        monitor_.checkpoint();
-        const SeenPiece piece = seen(node);
-        LinePieceCrossing near = piece.crossing({}, reach);
-        if (near.state == CrossingState::none) continue;
-        // Its boxes begin there, so that groups follow one another.
-        near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
-        if (near.along.upper < near.along.lower || outside(near.along, upper_ + reach)) continue;
-        const double off = near.limited_by_errors ? piece.error() : piece.width() + 2 * piece.error();
-        const bool out_of_budget = splits_ >= task_.budget || workspace_.full();
-        if (out_of_budget) found_.complete = false;
-        if (out_of_budget || off <= fine || !can_open(node)) {
-          leaves_.push_back({piece, piece.crossing({}, 0), near.along, node});
-          end_of_group = std::max(end_of_group, near.along.upper);
-          if (out_of_budget) break;
-          continue;
-        }
-        ++splits_;
-      }
-      open(node, begin, reach, upper_ + reach);
-    }
+    Tube question{*this, reach, fine};
+    search(open_, question);
     if (!done_) resolve_leaves(reach);
     if (task_.query == RayQuery::any) keep_certified();
     sort_hits();
@@ -341,10 +363,10 @@ class RayWalk {
   }
 
   [[nodiscard]] bool near_open_side(const Leaf& leaf, double reach) {
-    const PatchId root = workspace_.root_of(leaf.node);
+    const PatchId root = cache_.name(leaf.node).patch;
     unsigned sides = open_sides(root);
     if (sides == 0) return false;
-    const PiecePath& path = workspace_.patch(leaf.node).path;
+    const PiecePath& path = cache_.patch(leaf.node).path;
     for (unsigned level = 0; level < path.level(); ++level) {
       const unsigned child = path.digit(level);
       sides &= child == 3 ? 0u : 1u << child | 1u << (child + 2) % 3;
@@ -379,13 +401,13 @@ class RayWalk {
     return open;
   }
 
-  SurfaceWorkspace& workspace_;
+  PieceCache& cache_;
   const LimitSurface& surface_;
   const RayTask& task_;
   const WorkMonitor& monitor_;
   double lower_ = 0, upper_ = 0, far_ = 0, rounding_ = 0;
   PlacedBox segment_{};
-  NearestFirst<NodeGap> open_;
+  Frontier<NodeGap>& open_ = cache_.open_nodes();
   std::vector<Leaf> leaves_;
   FoundHits found_;
   std::uint64_t splits_ = 0;
@@ -394,8 +416,8 @@ class RayWalk {
 
 }  // namespace
 
-FoundHits walk_ray(SurfaceWorkspace& workspace, const RayTask& task, const WorkMonitor& monitor) {
-  return RayWalk(workspace, task, monitor).run();
+FoundHits walk_ray(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor) {
+  return RayWalk(cache, task, monitor).run();
 }
 
 }  // namespace snug

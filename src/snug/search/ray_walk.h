@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <snug/ray.h>
+#include <snug/search/piece_cache.h>
 #include <snug/search/ray_crossing.h>
-#include <snug/search/surface_workspace.h>
 
 namespace snug {
 
@@ -24,8 +24,7 @@ struct FoundHit {
   Extent along;
   bool certified = false, reached = false;
   int side = 0;
-  PatchId root;
-  PiecePath path;
+  PieceName piece;
   TriangleParameter at;
 };
 struct FoundHits {
@@ -40,7 +39,6 @@ struct FoundHits {
 /// collected, and crossings are counted along another line beside it, where that can be done.
 ///
 /// Source:    derivations/rays.md.
-[[nodiscard]] FoundHits walk_ray(SurfaceWorkspace& workspace, const RayTask& task,
-                                 const WorkMonitor& monitor);
+[[nodiscard]] FoundHits walk_ray(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor);
 
 }  // namespace snug

@@ -5,7 +5,7 @@
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
 #include <support/direction.h>
 #include <support/parallel.h>
 
@@ -81,7 +81,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_contacts(std::span<con
   std::vector<QuadraticTriangle> flat;
   flat.reserve(triangles.size());
   for (const Names& t : triangles) flat.push_back(flat_quadratic({points[t[0]], points[t[1]], points[t[2]]}));
-  const QuadraticBvh tree(flat, threads);
+  PieceSet set(std::move(flat));
+  set.prepare(threads);
   constexpr std::size_t block = 1024;
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> found((triangles.size() + block - 1) /
                                                                           block);
@@ -90,7 +91,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_contacts(std::span<con
       monitor.checkpoint();
       for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
         int of_this = 0;
-        tree.for_each_near(flat[i], [&](std::uint32_t other) {
+        for_each_near(set, set[i], [&](std::uint32_t other) {
           if (other <= i || of_this == max_of_one) return;
           if (may_touch(points, triangles[i], triangles[other])) {
             found[b].emplace_back(static_cast<std::uint32_t>(i), other);

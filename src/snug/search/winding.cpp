@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/geometry/triangle_distance.h>
+#include <snug/search/gap.h>
 #include <snug/search/precision.h>
 
 namespace snug {
@@ -77,45 +77,21 @@ class Ray {
 
 class Winding {
  public:
-  Winding(SurfaceWorkspace& workspace, const Point3& point, double error, const WorkMonitor& monitor)
-      : workspace_(workspace), point_(point), error_(error), monitor_(monitor) {}
+  Winding(PieceCache& cache, const Point3& point, double error, const WorkMonitor& monitor)
+      : cache_(cache), point_(point), error_(error), monitor_(monitor) {}
 
   std::optional<int> along(const Vector3& direction) {
-    const Ball& ball = workspace_.model().tree().ball();
+    const Ball& ball = cache_.model().tree().ball();
     const double length = distance(point_, ball.centre) + ball.radius + 1;
     if (!std::isfinite(length)) return std::nullopt;
     set_segment(direction, length);
     Ray ray(point_, error_, direction);
     if (!add_first_fillers(ray)) return std::nullopt;
-    stack_.assign(1, workspace_.root());
-    std::uint64_t splits = 0;
-    while (!stack_.empty()) {
-      const Node node = stack_.back();
-      stack_.pop_back();
-      if (node.bounded()) {
-        monitor_.checkpoint();
-        const bool last = !SurfaceWorkspace::can_open(node);
-        on_surface_ = last ? !(gap_of(node) > 0) : ++splits > max_ray_splits;
-        if (on_surface_) return std::nullopt;
-        const bool added = last ? ray.add(corners(node)) : add_fillers(node, ray);
-        if (!added) return std::nullopt;
-        if (last) continue;
-      }
-      const SurfaceWorkspace::Opened opened = workspace_.open(node);
-      WideNode::Distances to_segment, to_point;
-      opened.boxes->distances(segment_, error_, 0, to_segment);
-      opened.boxes->distances(point_, error_, to_point);
-      for (std::size_t i = 0; i < opened.count(); ++i) {
-        if (to_segment[i] > 0) continue;
-        const Node child = opened.child(i);
-        if (!child.bounded() || !(to_point[i] > 0)) {
-          stack_.push_back(child);
-        } else if (!ray.add(corners(child))) {
-          return std::nullopt;
-        }
-      }
-    }
-    return ray.crossings();
+    Along question{*this, ray};
+    Frontier<NodeGap>& open = cache_.open_nodes();
+    open.start(Order::last_first, {cache_.root(), 0});
+    search(open, question);
+    return question.certain ? std::optional(ray.crossings()) : std::nullopt;
   }
 
   // Has a direction failed since pieces around the point could not be made small enough? Then all do.
@@ -124,34 +100,86 @@ class Winding {
   // Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split
   // where they hold the point. Not positive if that takes too long.
   double clearance() {
-    NearestFirst<NodeGap> open;
-    open.start({workspace_.root(), -INFINITY});
-    std::uint64_t splits = 0;
-    while (!open.empty()) {
-      const auto [node, gap] = open.take();
-      if (node.bounded() && gap > 0) return static_cast<double>(gap);
-      if (node.bounded() && !SurfaceWorkspace::can_open(node)) {
-        const float nearer = single_down(gap_of(node));
-        if (!(nearer > 0)) return 0;
-        open.add({node, nearer});
-        continue;
-      }
-      if (node.bounded() && ++splits > max_ray_splits) return 0;
-      const SurfaceWorkspace::Opened opened = workspace_.open(node);
-      WideNode::Distances gaps;
-      opened.boxes->distances(point_, error_, gaps);
-      for (std::size_t i = 0; i < opened.count(); ++i) open.add({opened.child(i), gaps[i]});
-    }
-    return 0;
+    Clearance question{*this};
+    Frontier<NodeGap>& open = cache_.open_nodes();
+    open.start(Order::nearest_first, {cache_.root(), -INFINITY});
+    search(open, question);
+    return question.found;
   }
 
  private:
+  // Crossings of a ray with the surface: pieces that the segment meets, and hold the point, are split.
+  struct Along {
+    Winding& winding;
+    Ray& ray;
+    std::uint64_t splits = 0;
+    bool certain = true;
+
+    Verb look_at(const NodeGap& at) {
+      const Node& node = at.node;
+      if (!certain) return Verb::stop;
+      if (!node.bounded()) return Verb::open;
+      winding.monitor_.checkpoint();
+      const bool last = !PieceCache::can_open(node);
+      winding.on_surface_ = last ? !(winding.gap_of(node) > 0) : ++splits > max_ray_splits;
+      if (winding.on_surface_) return stop();
+      if (!(last ? ray.add(winding.corners(node)) : winding.add_fillers(node, ray))) return stop();
+      return last ? Verb::drop : Verb::open;
+    }
+    void open(const NodeGap& at) {
+      PieceCache& cache = winding.cache_;
+      const PieceCache::Opened opened = cache.open(at.node);
+      WideNode::Distances to_segment, to_point;
+      opened.boxes->distances(winding.segment_, winding.error_, 0, to_segment);
+      opened.boxes->distances(winding.point_, winding.error_, to_point);
+      for (std::size_t i = 0; i < opened.count() && certain; ++i) {
+        if (to_segment[i] > 0) continue;
+        const Node child = opened.child(i);
+        if (!child.bounded() || !(to_point[i] > 0)) {
+          cache.open_nodes().add({child, 0});
+        } else {
+          certain = ray.add(winding.corners(child));
+        }
+      }
+    }
+    Verb stop() {
+      certain = false;
+      return Verb::stop;
+    }
+  };
+
+  struct Clearance {
+    Winding& winding;
+    std::uint64_t splits = 0;
+    double found = 0;
+
+    Verb look_at(const NodeGap& at) {
+      const auto& [node, gap] = at;
+      if (node.bounded() && gap > 0) {
+        found = static_cast<double>(gap);
+        return Verb::stop;
+      }
+      if (!node.bounded()) return Verb::open;
+      if (PieceCache::can_open(node)) return ++splits > max_ray_splits ? Verb::stop : Verb::open;
+      const float nearer = single_down(winding.gap_of(node));
+      if (!(nearer > 0)) return Verb::stop;
+      winding.cache_.open_nodes().add({node, nearer});
+      return Verb::drop;
+    }
+    void open(const NodeGap& at) {
+      const PieceCache::Opened opened = winding.cache_.open(at.node);
+      WideNode::Distances gaps;
+      opened.boxes->distances(winding.point_, winding.error_, gaps);
+      for (std::size_t i = 0; i < opened.count(); ++i)
+        winding.cache_.open_nodes().add({opened.child(i), gaps[i]});
+    }
+  };
+
   // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much
   // nearer to it than the set around it.
   [[nodiscard]] double gap_of(const Node& node) const {
-    const OffsetTriangle offset = workspace_.piece(node).offset;
-    const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
-    return rounded_down(apart - enlarged(offset.radius + spatial_error(error_)));
+    const OffsetTriangle& offset = cache_.piece(node).offset;
+    return snug::gap_of(nearest({point_, point_, point_}, offset.base), offset.radius, spatial_error(error_));
   }
 
   // The part of the ray that matters, as a set.
@@ -163,13 +191,11 @@ class Winding {
     for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
   }
 
-  [[nodiscard]] LimitTriangle corners(const Node& node) const {
-    return limit_triangle(workspace_.patch(node));
-  }
+  [[nodiscard]] LimitTriangle corners(const Node& node) const { return limit_triangle(cache_.patch(node)); }
 
   // A split piece: its children's triangles and these have the same border as its own one.
   [[nodiscard]] bool add_fillers(const Node& node, Ray& ray) const {
-    const SurfaceWorkspace::Opened split = workspace_.open(node);
+    const PieceCache::Opened split = cache_.open(node);
     const LimitTriangle whole = corners(node);
     for (std::size_t k = 0, next = 1; k < 3; ++k, next = (k + 1) % 3) {
       const LimitTriangle child = corners(split.child(k));
@@ -181,7 +207,7 @@ class Winding {
 
   // The fillers of first splits that the segment may meet.
   [[nodiscard]] bool add_first_fillers(Ray& ray) {
-    const Solid& solid = workspace_.model().solid();
+    const Solid& solid = cache_.model().solid();
     const WideBvh* const tree = solid.filler_tree();
     if (tree == nullptr) return true;
     std::vector<const TreeNode*> open{&tree->root()};
@@ -205,12 +231,11 @@ class Winding {
     return true;
   }
 
-  SurfaceWorkspace& workspace_;
+  PieceCache& cache_;
   Point3 point_;
   double error_;
   const WorkMonitor& monitor_;
   PlacedBox segment_{};
-  std::vector<Node> stack_;
   bool on_surface_ = false;
 };
 
@@ -229,17 +254,17 @@ std::optional<int> along_some_ray(Winding& winding, const Vector3& from_middle) 
 
 }  // namespace
 
-std::optional<int> winding_number(SurfaceWorkspace& workspace, const Point3& point, double error,
+std::optional<int> winding_number(PieceCache& cache, const Point3& point, double error,
                                   const WorkMonitor& monitor) {
-  const Vector3 from_middle = point - workspace.model().tree().ball().centre;
-  Winding winding(workspace, point, error, monitor);
+  const Vector3 from_middle = point - cache.model().tree().ball().centre;
+  Winding winding(cache, point, error, monitor);
   if (const std::optional<int> number = along_some_ray(winding, from_middle)) return number;
   if (winding.on_surface()) return std::nullopt;
   // In the plane of a filler no ray decides. All points nearer than the surface have the same number.
   const double clearance = winding.clearance();
   if (!(clearance > 8 * error + 0x1p-45)) return std::nullopt;
   for (const Vector3& direction : directions) {
-    Winding beside(workspace, point + (clearance / 4) * direction, error, monitor);
+    Winding beside(cache, point + (clearance / 4) * direction, error, monitor);
     if (const std::optional<int> number = along_some_ray(beside, from_middle)) return number;
   }
   return std::nullopt;

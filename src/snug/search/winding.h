@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <snug/search/surface_workspace.h>
+#include <snug/search/piece_cache.h>
 
 namespace snug {
 
@@ -17,7 +17,7 @@ namespace snug {
 /// Requires:  point and error in scaled units of the surface.
 /// Errors:    those of SurfaceBvh::solid().
 /// Source:    derivations/contact.md.
-[[nodiscard]] std::optional<int> winding_number(SurfaceWorkspace& workspace, const Point3& point,
-                                                double error, const WorkMonitor& monitor = {});
+[[nodiscard]] std::optional<int> winding_number(PieceCache& cache, const Point3& point, double error,
+                                                const WorkMonitor& monitor = {});
 
 }  // namespace snug

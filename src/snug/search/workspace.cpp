@@ -12,14 +12,14 @@ constexpr std::uint64_t queries_between_looks = 1024;
 
 }  // namespace
 
-SurfaceWorkspace& Workspace::Pieces::of(const Surface& surface) {
+PieceCache& Workspace::Pieces::of(const Surface& surface) {
   begin_query();
   return find(surface, false);
 }
 
 Workspace::Pieces::Pair Workspace::Pieces::of(const Surface& a, const Surface& b) {
   begin_query();
-  SurfaceWorkspace& first = find(a, false);
+  PieceCache& first = find(a, false);
   return {first, find(b, a.data() == b.data())};
 }
 
@@ -27,7 +27,7 @@ void Workspace::Pieces::begin_query() {
   if (++query_ % queries_between_looks == 0) drop_old();
 }
 
-SurfaceWorkspace& Workspace::Pieces::find(const Surface& surface, bool second) {
+PieceCache& Workspace::Pieces::find(const Surface& surface, bool second) {
   const SurfaceData& data = *surface.data();
   const std::uint64_t name = 2 * data.storage() + (second ? 1 : 0);
   Recent& recent = recent_[name % recent_.size()];
@@ -37,7 +37,7 @@ SurfaceWorkspace& Workspace::Pieces::find(const Surface& surface, bool second) {
       entry.query = query_;
       entry.surface = surface.data();
       drop_old();
-      entry.pieces = std::make_unique<SurfaceWorkspace>(data.bvh());
+      entry.pieces = std::make_unique<PieceCache>(data.bvh());
       entry.number = data.number();
     }
     recent = {name, &entry};
@@ -80,7 +80,7 @@ void Workspace::Pieces::drop_gone() {
 }
 
 std::size_t Workspace::Pieces::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = bytes_kept_;
   for (const auto& [name, entry] : entries_) sum += entry.pieces ? entry.pieces->bytes() : 0;
   for (const Workspace& other : of_other_threads_) sum += other.bytes();
   return sum;
@@ -90,6 +90,8 @@ void Workspace::Pieces::clear() {
   recent_ = {};
   entries_.clear();
   of_other_threads_.clear();
+  kept_ = {};
+  bytes_kept_ = 0;
 }
 
 Workspace::Workspace() : pieces_(std::make_unique<Pieces>()) {}

@@ -6,26 +6,37 @@
 #include <unordered_map>
 #include <vector>
 
+#include <snug/search/piece_cache.h>
 #include <snug/search/surface_data.h>
-#include <snug/search/surface_workspace.h>
 #include <support/workers.h>
 
 namespace snug {
 
 /// Contents of a Workspace: pieces of each surface that a query met, twice where a surface is compared with
-/// itself.
+/// itself, and what questions keep besides.
 class Workspace::Pieces {
  public:
   /// For a query about one surface.
-  [[nodiscard]] SurfaceWorkspace& of(const Surface& surface);
+  [[nodiscard]] PieceCache& of(const Surface& surface);
   /// For a query about two, which may be the same one.
   struct Pair {
-    SurfaceWorkspace &a, &b;
+    PieceCache &a, &b;
   };
   [[nodiscard]] Pair of(const Surface& a, const Surface& b);
 
   /// For the other threads of a run.
   [[nodiscard]] std::vector<Workspace>& of_other_threads() { return of_other_threads_; }
+  /// What a question keeps for later ones besides pieces: of one type for each purpose, made on first use.
+  enum class Kept : std::uint8_t { collisions, distances };
+  template <class T>
+  [[nodiscard]] T& kept(Kept purpose) {
+    std::shared_ptr<void>& place = kept_[static_cast<std::size_t>(purpose)];
+    if (!place) {
+      place = std::make_shared<T>();
+      bytes_kept_ += sizeof(T);
+    }
+    return *static_cast<T*>(place.get());
+  }
 
   [[nodiscard]] std::size_t bytes() const;
   void clear();
@@ -35,7 +46,7 @@ class Workspace::Pieces {
   struct Entry {
     std::weak_ptr<const SurfaceData> surface;
     std::uint64_t number = 0;  // of that frame
-    std::unique_ptr<SurfaceWorkspace> pieces;
+    std::unique_ptr<PieceCache> pieces;
     std::uint64_t query = 0;  // that used it last
   };
   // Places of the last few entries, looked up first.
@@ -45,7 +56,7 @@ class Workspace::Pieces {
   };
 
   void begin_query();
-  SurfaceWorkspace& find(const Surface& surface, bool second);
+  PieceCache& find(const Surface& surface, bool second);
   void drop_old();
   // Entries of surfaces that are gone.
   void drop_gone();
@@ -53,6 +64,8 @@ class Workspace::Pieces {
   std::unordered_map<std::uint64_t, Entry> entries_;
   std::array<Recent, 8> recent_{};
   std::vector<Workspace> of_other_threads_;
+  std::array<std::shared_ptr<void>, 2> kept_;
+  std::size_t bytes_kept_ = 0;
   std::uint64_t query_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include <snug/geometry/motion.h>
 #include <snug/patch/limit_evaluator.h>
 #include <snug/patch/patch.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/surface/piece_name.h>
 
 namespace snug {
 
@@ -18,6 +18,11 @@ namespace snug {
 ///            of the quad where rounding crosses its diagonal.
 /// Requires:  surface.has_patch(patch); u, v >= 0 and u + v <= 1, up to a rounding.
 [[nodiscard]] Place place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at);
+/// The same of a parameter of a piece.
+[[nodiscard]] inline Place place_of(const LimitSurface& surface, const PieceName& piece,
+                                    TriangleParameter at) {
+  return place_of(surface, piece.patch, to_face(piece.path, at));
+}
 
 /// The patch that a place lies on.
 /// Nothing where there is no such owner, corner or parameter, or no surface.

@@ -19,62 +19,6 @@ std::uint64_t mixed(std::uint64_t x) {
 
 }  // namespace
 
-PieceName PieceName::parent() const {
-  SNUG_EXPECT(splits > 0);
-  PieceName name = *this;
-  name.splits = static_cast<std::uint8_t>(splits - 1);
-  name.i = i / 2;
-  name.j = j / 2;
-  const bool both_odd = (i & j & 1u) != 0, both_even = ((i | j) & 1u) == 0;
-  // The middle one of a piece is turned against it.
-  name.turned = turned ? !both_even : both_odd;
-  return name;
-}
-
-unsigned PieceName::digit() const {
-  const bool odd_i = (i & 1u) != 0, odd_j = (j & 1u) != 0;
-  if (!turned) return odd_i ? (odd_j ? 3 : 1) : (odd_j ? 2 : 0);
-  return odd_i ? (odd_j ? 0 : 2) : (odd_j ? 1 : 3);
-}
-
-PieceName PieceName::child(unsigned digit) const {
-  PieceName name = *this;
-  ++name.splits;
-  name.i = 2 * i;
-  name.j = 2 * j;
-  if (digit == 3) name.turned = !turned;
-  if (!turned) {
-    if (digit == 1) ++name.i;
-    if (digit == 2) ++name.j;
-  } else {
-    if (digit == 0 || digit == 2 || digit == 3) ++name.i;
-    if (digit == 0 || digit == 1 || digit == 3) ++name.j;
-  }
-  return name;
-}
-
-std::array<std::array<std::uint32_t, 2>, 3> PieceName::corners() const {
-  using Corner = std::array<std::uint32_t, 2>;
-  if (turned) return {Corner{i + 1, j + 1}, Corner{i, j + 1}, Corner{i + 1, j}};
-  return {Corner{i, j}, Corner{i + 1, j}, Corner{i, j + 1}};
-}
-
-PiecePath PieceName::path() const {
-  std::array<unsigned, LevelComplex::max_level> digits{};
-  PieceName at = *this;
-  for (unsigned k = splits; k-- > 0; at = at.parent()) digits[k] = at.digit();
-  PiecePath path;
-  for (unsigned k = 0; k < splits; ++k) path = path.child(digits[k]);
-  return path;
-}
-
-std::size_t PieceNameHash::operator()(const PieceName& name) const noexcept {
-  const std::uint64_t place = (std::uint64_t{name.i} << 32) | name.j;
-  const std::uint64_t rest = (std::uint64_t{name.patch} << 8) | (std::uint64_t{name.splits} << 1) |
-                             static_cast<std::uint64_t>(name.turned);
-  return mixed(mixed(place) + rest);
-}
-
 std::size_t LevelVertexHash::operator()(const LevelVertex& v) const noexcept {
   return mixed(mixed(v.where) + v.place);
 }
@@ -83,23 +27,24 @@ LevelComplex::LevelComplex(const LimitSurface& surface) : surface_(&surface) {
   const std::size_t count = surface.patch_count();
   names_.resize(count);
   sides_.resize(count);
-  for (std::uint32_t p = 0; p < count; ++p) {
-    if (!surface.has_patch(PatchId(p))) continue;
-    if (surface.after_first_split(PatchId(p))) first_level_ = 1;
-    names_[p] = surface.corner_names(PatchId(p));
-    sides_[p] = sides_of(p);
+  for (std::size_t i = 0; i < count; ++i) {
+    const PatchId p(i);
+    if (!surface.has_patch(p)) continue;
+    if (surface.after_first_split(p)) first_level_ = 1;
+    names_[i] = surface.corner_names(p);
+    sides_[i] = sides_of(p);
     for (std::uint8_t k = 0; k < 3; ++k) {
-      at_corner_[names_[p][k]].push_back({p, k});
-      at_edge_[sides_[p][k].edge].push_back({p, k});
+      at_corner_[names_[i][k]].push_back({p, k});
+      at_edge_[sides_[i][k].edge].push_back({p, k});
     }
   }
 }
 
 // Edges of the mesh (of dual schemes: between the faces on both sides) have their numbers, others follow.
-std::array<LevelComplex::Side, 3> LevelComplex::sides_of(std::uint32_t p) const {
+std::array<LevelComplex::Side, 3> LevelComplex::sides_of(PatchId p) const {
   const Topology& topology = surface_->topology();
   const bool primal = surface_->rules().primal;
-  const auto [owner, part] = surface_->place(PatchId(p));
+  const auto [owner, part] = surface_->place(p);
   const std::size_t first = surface_->patches_of(owner).begin;
   HalfEdge corner = primal ? topology.first_of(FaceId(owner)) : topology.leaving(VertexId(owner));
   const auto next = [&](HalfEdge h) { return primal ? topology.next(h) : topology.ccw(h); };
@@ -126,7 +71,7 @@ std::array<LevelComplex::Side, 3> LevelComplex::sides_of(std::uint32_t p) const 
     }
     return sides;
   }
-  if (!surface_->after_first_split(PatchId(p))) {
+  if (!surface_->after_first_split(p)) {
     for (unsigned k = 0; k < 2 * part; ++k) corner = next(corner);
     const HalfEdge middle = next(corner), far = next(middle);
     // The diagonal runs from corner 0 to corner 2 of the quad.
@@ -153,9 +98,9 @@ std::array<LevelComplex::Side, 3> LevelComplex::sides_of(std::uint32_t p) const 
 
 std::vector<PieceName> LevelComplex::pieces() const {
   std::vector<PieceName> pieces;
-  for (std::uint32_t p = 0; p < names_.size(); ++p) {
-    if (!surface_->has_patch(PatchId(p))) continue;
-    const PieceName whole{p};
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const PieceName whole{PatchId(i), {}};
+    if (!surface_->has_patch(whole.patch)) continue;
     if (level_of(whole) == first_level_) {
       pieces.push_back(whole);
     } else {
@@ -165,13 +110,13 @@ std::vector<PieceName> LevelComplex::pieces() const {
   return pieces;
 }
 
-LevelVertex LevelComplex::vertex(std::uint32_t p, unsigned splits, std::uint32_t i, std::uint32_t j) const {
-  const std::uint32_t n = 1u << splits, first = n - i - j;
+LevelVertex LevelComplex::vertex(PatchId p, unsigned splits, std::uint64_t i, std::uint64_t j) const {
+  const std::uint64_t n = std::uint64_t{1} << splits, first = n - i - j;
   const std::uint64_t vertices = surface_->topology().vertex_count(),
                       edges = surface_->topology().edge_count();
   const unsigned level = splits + offset(p);
   const auto corner = [&](std::size_t k) -> LevelVertex {
-    const std::uint64_t name = names_[p][k];
+    const std::uint64_t name = names_[p.index()][k];
     // The middle of an edge, where a first split ends, is one of its points.
     if (!surface_->rules().triangular() && name >= vertices && name < vertices + edges) {
       return {(on_edge << kind_shift) | (name - vertices), std::uint64_t{1} << (level - 1)};
@@ -182,7 +127,7 @@ LevelVertex LevelComplex::vertex(std::uint32_t p, unsigned splits, std::uint32_t
   if (i == n) return corner(1);
   if (j == n) return corner(2);
   const auto on = [&](std::size_t k, std::uint64_t t) -> LevelVertex {
-    const Side& side = sides_[p][k];
+    const Side& side = sides_[p.index()][k];
     // The whole edge has 2^level of them, which is n, or 2 n after a first split.
     const std::uint64_t halves = side.begin * (n - t) + side.end * t;
     return {(on_edge << kind_shift) | side.edge, offset(p) == 0 ? halves / 2 : halves};
@@ -190,23 +135,23 @@ LevelVertex LevelComplex::vertex(std::uint32_t p, unsigned splits, std::uint32_t
   if (j == 0) return on(0, i);
   if (first == 0) return on(1, j);
   if (i == 0) return on(2, n - j);
-  return {(in_patch << kind_shift) | p, (std::uint64_t{i} << 32) | j};
+  return {(in_patch << kind_shift) | p.value(), i << 32 | j};
 }
 
 std::array<LevelVertex, 3> LevelComplex::vertices(const PieceName& piece) const {
-  const auto at = piece.corners();
+  const auto at = piece.path.corners();
   std::array<LevelVertex, 3> result;
-  for (std::size_t k = 0; k < 3; ++k) result[k] = vertex(piece.patch, piece.splits, at[k][0], at[k][1]);
+  for (std::size_t k = 0; k < 3; ++k) result[k] = vertex(piece.patch, piece.path.level(), at[k][0], at[k][1]);
   return result;
 }
 
-void LevelComplex::add_pieces(std::uint32_t p, unsigned splits, std::uint32_t i, std::uint32_t j,
+void LevelComplex::add_pieces(PatchId p, unsigned splits, std::uint64_t i, std::uint64_t j,
                               std::vector<LevelStar::Sector>& out) const {
-  const std::uint32_t n = 1u << splits;
-  const auto add = [&](bool turned, std::uint32_t di, std::uint32_t dj, std::uint8_t centre) {
+  const std::uint64_t n = std::uint64_t{1} << splits;
+  const auto add = [&](bool turned, std::uint64_t di, std::uint64_t dj, std::uint8_t centre) {
     if (i < di || j < dj) return;
-    const PieceName piece{p, static_cast<std::uint8_t>(splits), turned, i - di, j - dj};
-    if (piece.i + piece.j + (turned ? 2 : 1) <= n) out.push_back({piece, centre});
+    const PiecePath path(splits, turned, i - di, j - dj);
+    if (path.i() + path.j() + (turned ? 2 : 1) <= n) out.push_back({{p, path}, centre});
   };
   add(false, 0, 0, 0);
   add(false, 1, 0, 1);
@@ -221,26 +166,24 @@ LevelStar LevelComplex::star(const LevelVertex& vertex, unsigned level) const {
   const std::uint64_t kind = vertex.where >> kind_shift,
                       id = vertex.where & ((std::uint64_t{1} << kind_shift) - 1);
   if (kind == in_patch) {
-    const auto p = static_cast<std::uint32_t>(id);
-    add_pieces(p, level - offset(p), static_cast<std::uint32_t>(vertex.place >> 32),
-               static_cast<std::uint32_t>(vertex.place), star.sectors);
+    const PatchId p(id);
+    add_pieces(p, level - offset(p), vertex.place >> 32, vertex.place & UINT32_MAX, star.sectors);
   } else if (kind == at_corner) {
     for (const auto& [p, k] : at_corner_.at(id)) {
       const unsigned splits = level - offset(p);
-      const std::uint32_t n = 1u << splits;
+      const std::uint64_t n = std::uint64_t{1} << splits;
       add_pieces(p, splits, k == 1 ? n : 0, k == 2 ? n : 0, star.sectors);
     }
   } else {
     for (const auto& [p, k] : at_edge_.at(id)) {
-      const Side& side = sides_[p][k];
+      const Side& side = sides_[p.index()][k];
       const unsigned splits = level - offset(p);
       const std::uint64_t n = std::uint64_t{1} << splits, half = std::uint64_t{1} << (level - 1);
       const std::uint64_t begin = side.begin * half, end = side.end * half;
       if (vertex.place < std::min(begin, end) || vertex.place > std::max(begin, end)) continue;
       const std::uint64_t length = std::max(begin, end) - std::min(begin, end);
       const std::uint64_t from = begin < end ? vertex.place - begin : begin - vertex.place;
-      const auto t = static_cast<std::uint32_t>(from * n / length);
-      const auto rest = static_cast<std::uint32_t>(n) - t;
+      const std::uint64_t t = from * n / length, rest = n - t;
       if (k == 0) add_pieces(p, splits, t, 0, star.sectors);
       if (k == 1) add_pieces(p, splits, rest, t, star.sectors);
       if (k == 2) add_pieces(p, splits, 0, rest, star.sectors);
@@ -258,10 +201,10 @@ void LevelComplex::put_in_order(LevelStar& star) const {
   };
   std::vector<Ends> ends;
   for (const auto& [piece, centre] : star.sectors) {
-    const auto at = piece.corners();
+    const auto at = piece.path.corners();
     const auto middle = [&, centre_of = centre, &named = piece](std::size_t k) {
       const auto &from = at[centre_of], &to = at[(centre_of + k) % 3];
-      return vertex(named.patch, named.splits + 1u, from[0] + to[0], from[1] + to[1]);
+      return vertex(named.patch, named.path.level() + 1u, from[0] + to[0], from[1] + to[1]);
     };
     ends.push_back({middle(1), middle(2)});
   }

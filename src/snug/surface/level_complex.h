@@ -7,32 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include <snug/surface/limit_surface.h>
+#include <snug/surface/piece_name.h>
 
 namespace snug {
-
-/// A piece of a root patch after some splits of it: the triangle (i, j), (i + 1, j), (i, j + 1) of the lattice
-/// that cuts each of its edges in 2^splits, or the one beside it that is turned: (i + 1, j + 1), (i, j + 1), (i
-/// + 1, j). Corners are in the order of PiecePath's.
-struct PieceName {
-  std::uint32_t patch = 0;
-  std::uint8_t splits = 0;
-  bool turned = false;
-  std::uint32_t i = 0, j = 0;
-
-  /// Requires:  splits > 0.
-  [[nodiscard]] PieceName parent() const;
-  /// Which child of its parent it is.
-  [[nodiscard]] unsigned digit() const;
-  [[nodiscard]] PieceName child(unsigned digit) const;
-  /// In the patch's lattice.
-  [[nodiscard]] std::array<std::array<std::uint32_t, 2>, 3> corners() const;
-  [[nodiscard]] PiecePath path() const;
-  friend auto operator<=>(const PieceName&, const PieceName&) = default;
-};
-struct PieceNameHash {
-  std::size_t operator()(const PieceName& name) const noexcept;
-};
 
 /// A vertex of the surface's triangulation of some level. Equal names, equal limit points.
 struct LevelVertex {
@@ -65,7 +42,9 @@ class LevelComplex {
 
   [[nodiscard]] unsigned first_level() const { return first_level_; }
   static constexpr unsigned max_level = 24;
-  [[nodiscard]] unsigned level_of(const PieceName& piece) const { return piece.splits + offset(piece.patch); }
+  [[nodiscard]] unsigned level_of(const PieceName& piece) const {
+    return piece.path.level() + offset(piece.patch);
+  }
   /// All pieces of the first level.
   [[nodiscard]] std::vector<PieceName> pieces() const;
   /// The names of a piece's corners, at its level.
@@ -81,16 +60,13 @@ class LevelComplex {
     std::uint8_t begin, end;
   };
   struct Incidence {
-    std::uint32_t patch;
+    PatchId patch;
     std::uint8_t corner;  // or side
   };
-  [[nodiscard]] unsigned offset(std::uint32_t patch) const {
-    return surface_->after_first_split(PatchId(patch)) ? 1u : 0u;
-  }
-  [[nodiscard]] std::array<Side, 3> sides_of(std::uint32_t patch) const;
-  [[nodiscard]] LevelVertex vertex(std::uint32_t patch, unsigned splits, std::uint32_t i,
-                                   std::uint32_t j) const;
-  void add_pieces(std::uint32_t patch, unsigned splits, std::uint32_t i, std::uint32_t j,
+  [[nodiscard]] unsigned offset(PatchId patch) const { return surface_->after_first_split(patch) ? 1u : 0u; }
+  [[nodiscard]] std::array<Side, 3> sides_of(PatchId patch) const;
+  [[nodiscard]] LevelVertex vertex(PatchId patch, unsigned splits, std::uint64_t i, std::uint64_t j) const;
+  void add_pieces(PatchId patch, unsigned splits, std::uint64_t i, std::uint64_t j,
                   std::vector<LevelStar::Sector>& out) const;
   void put_in_order(LevelStar& star) const;
 

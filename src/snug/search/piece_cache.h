@@ -6,7 +6,9 @@
 #include <vector>
 
 #include <snug/geometry/motion.h>
+#include <snug/search/frontier.h>
 #include <snug/search/surface_bvh.h>
+#include <snug/surface/piece_name.h>
 
 namespace snug {
 
@@ -27,6 +29,17 @@ struct Node {
 struct NodeGap {
   Node node;
   float gap;
+};
+
+/// Two nodes, of A and of B.
+struct NodePair {
+  std::array<Node, 2> nodes;
+  /// Lower bound of their distance where positive, in the query's units, and not below that of what they are
+  /// parts of; else the more negative the deeper they overlap.
+  float gap;
+
+  /// Are both patches, or pieces of patches?
+  [[nodiscard]] bool bounded() const { return nodes[0].bounded() && nodes[1].bounded(); }
 };
 
 /// Extents of the latest pieces, by a hash of the piece, each along a direction that has a number of its own.
@@ -55,20 +68,20 @@ class KnownExtents {
   std::uint64_t last_direction_ = 0;
 };
 
-/// Pieces of one surface that queries have split. One a thread. Dropped between two queries when it has grown beyond
-/// 256 MiB.
-/// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
-class SurfaceWorkspace {
+/// Pieces of one surface that queries came to: nodes below the tree, and patches and pieces by their names. One a thread.
+/// Guarantee: a node opens to the same boxes, and a piece has the same bounds, whatever came before: no answer depends on earlier
+///            queries.
+class PieceCache {
  public:
-  /// A query splits at most this many different pieces, which bounds its memory.
-  explicit SurfaceWorkspace(const SurfaceBvh& model, std::size_t max_pieces = 50'000)
+  /// A query splits at most this many different nodes, which bounds its memory.
+  explicit PieceCache(const SurfaceBvh& model, std::size_t max_pieces = 50'000)
       : model_(&model), max_pieces_(max_pieces) {}
 
   [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
   [[nodiscard]] std::size_t bytes() const;
 
-  /// For queries: to be called first.
-  void begin();
+  /// For queries: to be called first. Drops all where it has grown beyond so many bytes.
+  void begin(std::size_t max_bytes = std::size_t{256} << 20);
   /// Forgets all that was split, when the surface has moved. Keeps its memory.
   void renew(const SurfaceBvh& model);
   [[nodiscard]] Node root() const { return {&model_->tree().root(), 0, Node::Kind::tree, 0}; }
@@ -78,16 +91,14 @@ class SurfaceWorkspace {
     return node.kind == Node::Kind::patch ? static_cast<const LeafNode*>(node.boxes)->bounds[node.place]
                                           : static_cast<const SplitNode*>(node.boxes)->bounds[node.place];
   }
-  /// Its control points, which stay where they are until begin().
-  [[nodiscard]] const Patch& patch(const Node& node);
-  /// The whole patch that it belongs to.
-  [[nodiscard]] PatchId root_of(const Node& node) const {
-    return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place) : splits_[node.owner].root;
-  }
-  /// The piece with its offset triangle, made anew.
-  [[nodiscard]] Piece piece(const Node& node);
-  /// Its bounding points, until the next call, where the model is bounded by rows.
-  [[nodiscard]] const BoundingPoints& points() const { return points_; }
+  /// Its control points. What is referred to here and below stays where it is until begin() or renew().
+  [[nodiscard]] const Patch& patch(const Node& node) { return entries_[entry_of(node)].piece.patch; }
+  /// The same with its offset triangle, in double precision.
+  [[nodiscard]] const Piece& piece(const Node& node) { return bounded(entry_of(node)); }
+  [[nodiscard]] PieceName name(const Node& node);
+  /// Of a piece by its name, be it a node or not.
+  [[nodiscard]] const Patch& patch(const PieceName& name) { return entries_[entry_of(name)].piece.patch; }
+  [[nodiscard]] const Piece& piece(const PieceName& name) { return bounded(entry_of(name)); }
   /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
   [[nodiscard]] static bool can_open(const Node& node) {
     if (node.kind == Node::Kind::tree) return true;
@@ -112,39 +123,40 @@ class SurfaceWorkspace {
 
   /// For a query that asks for extents of pieces along one direction many times.
   [[nodiscard]] KnownExtents& extents() { return extents_; }
-  /// Memory for nodes that wait in a query that goes down one tree.
-  [[nodiscard]] std::vector<NodeGap>& waiting() { return waiting_; }
+  /// For a query that goes down one tree, and for one about a pair, of which this is A.
+  [[nodiscard]] Frontier<NodeGap>& open_nodes() { return open_nodes_; }
+  [[nodiscard]] Frontier<NodePair>& open_pairs() { return open_pairs_; }
 
   /// Has this query reached the limit of distinct splits?
   [[nodiscard]] bool full() const { return touched_ >= max_pieces_; }
 
  private:
   static constexpr std::uint32_t none = UINT32_MAX;
-  // The pieces of a patch or a piece.
+  // A patch or a piece.
+  struct Entry {
+    Piece piece;
+    bool bounded = false;  // Is its offset triangle made?
+    std::array<std::uint32_t, 4> children{none, none, none, none};
+    std::uint32_t split = none;
+  };
+  // The nodes that an entry opens to.
   struct Split {
     SplitNode pieces;
-    PatchId root;
-    std::array<std::uint32_t, 4> splits{none, none, none, none};   // of these pieces
-    std::array<std::uint32_t, 4> patches{none, none, none, none};  // in patches_
-    std::uint32_t query = 0;                                       // that opened it last
-    std::uint32_t parent;                                          // in patches_
+    std::uint32_t parent;     // the entry
+    std::uint32_t query = 0;  // that opened it last
   };
-  struct Root {
-    std::uint32_t split = none, patch = none;
-  };
-  // Of whole patches, by number; open addressing.
+  // Entries of whole patches, by number; open addressing.
   class Roots {
    public:
-    // Valid until the next call.
-    [[nodiscard]] Root& operator[](std::uint32_t patch);
+    // None for a new one. Valid until the next call.
+    [[nodiscard]] std::uint32_t& operator[](std::uint32_t patch);
     // Keeps its memory.
     void clear();
     [[nodiscard]] std::size_t bytes() const { return places_.capacity() * sizeof(Place); }
 
    private:
     struct Place {
-      std::uint32_t patch = 0, round = 0;
-      Root root;
+      std::uint32_t patch = 0, round = 0, entry = none;
     };
     [[nodiscard]] Place& place_of(std::uint32_t patch);
 
@@ -152,20 +164,26 @@ class SurfaceWorkspace {
     std::size_t count_ = 0;
     std::uint32_t round_ = 1;  // places of earlier ones are free
   };
-  [[nodiscard]] std::uint32_t patch_place(const Node& node);
-  [[nodiscard]] std::uint32_t& split_place(const Node& node);
-  [[nodiscard]] Patch& next_patch();
+  [[nodiscard]] std::uint32_t entry_of(const Node& node);
+  [[nodiscard]] std::uint32_t entry_of(const PieceName& name);
+  [[nodiscard]] std::uint32_t root_entry(PatchId root);
+  [[nodiscard]] std::uint32_t child_entry(std::uint32_t parent, unsigned child);
+  // Writes the control points of a new entry by make(patch).
+  template <class Make>
+  [[nodiscard]] std::uint32_t add(PatchId root, const Make& make);
+  [[nodiscard]] const Piece& bounded(std::uint32_t entry);
 
   const SurfaceBvh* model_;
   std::size_t max_pieces_;
   BoundingPoints points_;
   KnownExtents extents_;
-  std::vector<NodeGap> waiting_;
+  Frontier<NodeGap> open_nodes_;
+  Frontier<NodePair> open_pairs_;
   Roots roots_;
   // Elements beyond the counts are spare memory.
   std::deque<Split> splits_;
-  std::deque<Patch> patches_;
-  std::size_t split_count_ = 0, patch_count_ = 0;
+  std::deque<Entry> entries_;
+  std::size_t split_count_ = 0, entry_count_ = 0;
   std::size_t bytes_of_points_ = 0;
   std::uint32_t query_ = 0;
   std::size_t touched_ = 0;
@@ -174,7 +192,7 @@ class SurfaceWorkspace {
 /// A surface where a query is to see it.
 struct PlacedBvh {
   const SurfaceBvh& model;
-  SurfaceWorkspace& scratch;  ///< of this model and of no other one in the same query
+  PieceCache& scratch;  ///< of this model and of no other one in the same query
   Motion pose;
   /// Upper bound, in mesh units, of how far from there the place that is meant of a point may be. Crossings and
   /// points inside of solids are proved for that place too; distances are those of `pose` itself.

@@ -1,4 +1,4 @@
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
 
 #include <gtest/gtest.h>
 #include <snug/geometry/rounding.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace snug::quadratic_bvh_test {
+namespace snug::feet_test {
 namespace {
 
 class Draw {
@@ -53,7 +53,7 @@ double sampled_distance(const QuadraticTriangle& q, const Point3& p, int steps) 
   return least;
 }
 
-TEST(quadratic_bvh, restrictions_are_the_same_points) {
+TEST(feet, restrictions_are_the_same_points) {
   Draw draw(1);
   for (int i = 0; i < 1000; ++i) {
     const QuadraticTriangle q = draw.quadratic();
@@ -69,18 +69,19 @@ TEST(quadratic_bvh, restrictions_are_the_same_points) {
 }
 
 // Lower bounds hold against samples, and are as near to the nearest foot as they say.
-TEST(quadratic_bvh, certain_distances_hold_and_are_narrow) {
+TEST(feet, certain_distances_hold_and_are_narrow) {
   Draw draw(2);
   for (int trial = 0; trial < 60; ++trial) {
     std::vector<QuadraticTriangle> quadratics(1 + draw.below(60));
     for (QuadraticTriangle& q : quadratics) q = draw.quadratic();
-    const QuadraticBvh tree(quadratics, 1);
+    PieceSet set(quadratics);
+    set.prepare(1);
     for (int i = 0; i < 20; ++i) {
       Point3 p = Point3{} + draw.vector(1.5);
       if (i % 3 == 0)
         p = point_of(quadratics[draw.below(quadratics.size())], draw.parameter()) + draw.vector(1e-3);
-      QuadraticFoot foot = tree.nearest(p);
-      const double gap = 1e-4, certain = tree.certain_distance(p, gap, foot);
+      QuadraticFoot foot = nearest_foot(set, p);
+      const double gap = 1e-4, certain = certain_distance(set, p, gap, foot);
       double sampled = INFINITY, max_error = 0;
       for (const QuadraticTriangle& q : quadratics) {
         sampled = std::min(sampled, sampled_distance(q, p, 24) - q.error);
@@ -95,42 +96,45 @@ TEST(quadratic_bvh, certain_distances_hold_and_are_narrow) {
   }
 }
 
-TEST(quadratic_bvh, feet_on_triangles_are_the_nearest) {
+TEST(feet, feet_on_triangles_are_the_nearest) {
   Draw draw(3);
   for (int i = 0; i < 20'000; ++i) {
     const Point3 o = Point3{} + draw.vector(1);
     const std::vector<QuadraticTriangle> one{flat_quadratic({o, o + draw.vector(1), o + draw.vector(1)})};
-    const QuadraticBvh tree(one, 1);
+    PieceSet set(one);
+    set.prepare(1);
     const Point3 p = Point3{} + draw.vector(2);
-    QuadraticFoot foot = tree.foot_on(0, p);
-    EXPECT_NEAR(tree.certain_distance(p, 0, foot), foot.distance, 1e-11);
+    QuadraticFoot foot = foot_on(set, 0, p);
+    EXPECT_NEAR(certain_distance(set, p, 0, foot), foot.distance, 1e-11);
   }
 }
 
-TEST(quadratic_bvh, below_is_the_restriction_to_feet) {
+TEST(feet, below_is_the_restriction_to_feet) {
   Draw draw(4);
   for (int i = 0; i < 1000; ++i) {
     const std::vector<QuadraticTriangle> one{draw.quadratic()};
-    const QuadraticBvh tree(one, 1);
+    PieceSet set(one);
+    set.prepare(1);
     std::array<QuadraticFoot, 3> feet;
-    for (QuadraticFoot& foot : feet) foot = tree.foot_on(0, Point3{} + draw.vector(1.5));
-    const QuadraticTriangle below = tree.below(feet),
+    for (QuadraticFoot& foot : feet) foot = foot_on(set, 0, Point3{} + draw.vector(1.5));
+    const QuadraticTriangle part = below(set, feet),
                             expected = restricted(one[0], {feet[0].at, feet[1].at, feet[2].at});
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_LT(distance(below.corners[k], expected.corners[k]), 1e-14);
-      EXPECT_LT(distance(below.middles[k], expected.middles[k]), 1e-14);
+      EXPECT_LT(distance(part.corners[k], expected.corners[k]), 1e-14);
+      EXPECT_LT(distance(part.middles[k], expected.middles[k]), 1e-14);
     }
   }
 }
 
 // Unmarked pieces are farther away than the reach; pieces that cannot meet are apart.
-TEST(quadratic_bvh, marks_all_that_is_near_and_denies_no_contact) {
+TEST(feet, marks_all_that_is_near_and_denies_no_contact) {
   Draw draw(5);
   int denied = 0, pairs = 0;
   for (int trial = 0; trial < 400; ++trial) {
     std::vector<QuadraticTriangle> quadratics(1 + draw.below(30));
     for (QuadraticTriangle& q : quadratics) q = draw.quadratic();
-    const QuadraticBvh tree(quadratics, 1);
+    PieceSet set(quadratics);
+    set.prepare(1);
     QuadraticTriangle part = draw.quadratic();
     const std::size_t chosen = draw.below(quadratics.size());
     if (trial % 2 == 0) {
@@ -142,14 +146,14 @@ TEST(quadratic_bvh, marks_all_that_is_near_and_denies_no_contact) {
         part.corners[k] = part.corners[k] + between + gap;
         part.middles[k] = part.middles[k] + between + gap;
       }
-      EXPECT_TRUE(tree.may_meet(part));
+      EXPECT_TRUE(may_meet(set, part));
     } else {
       ++pairs;
-      denied += !tree.may_meet(part);
+      denied += !may_meet(set, part);
     }
     const double reach = 0.3 * draw.unit();
     std::vector<std::uint8_t> marks(quadratics.size());
-    tree.mark_near(part, reach, marks);
+    mark_near(set, part, reach, marks);
     for (std::size_t i = 0; i < quadratics.size(); ++i) {
       if (marks[i] != 0) continue;
       for (int s = 0; s < 50; ++s) {
@@ -163,4 +167,4 @@ TEST(quadratic_bvh, marks_all_that_is_near_and_denies_no_contact) {
 }
 
 }  // namespace
-}  // namespace snug::quadratic_bvh_test
+}  // namespace snug::feet_test

@@ -1,9 +1,8 @@
-#include <snug/search/quadratic_bvh.h>
+#include <snug/search/feet.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include <snug/bvh/obb.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/piece.h>
@@ -12,7 +11,6 @@
 namespace snug {
 namespace {
 
-using Points = std::array<Point3, 6>;
 using Corners = std::array<TriangleParameter, 3>;
 
 constexpr Corners whole_triangle{TriangleParameter{0, 0}, {1, 0}, {0, 1}};
@@ -24,10 +22,6 @@ std::array<Corners, 4> quarters(const Corners& of) {
     m[k] = {(a.u + b.u) / 2, (a.v + b.v) / 2};
   }
   return {Corners{of[0], m[0], m[2]}, {m[0], of[1], m[1]}, {m[2], m[1], of[2]}, {m[1], m[2], m[0]}};
-}
-
-Points points_of(const QuadraticTriangle& q) {
-  return {q.corners[0], q.corners[1], q.corners[2], q.middles[0], q.middles[1], q.middles[2]};
 }
 
 // The polar form at two parameters; relative to corner 0, so that little is lost.
@@ -157,30 +151,6 @@ TriangleParameter foot_of(const QuadraticTriangle& q, bool curved, const Point3&
   return curved ? curved_foot(q, p, flat) : flat;
 }
 
-std::array<Vector3, 3> axes_of(const QuadraticTriangle& q) {
-  const Vector3 normal = unit_normal(q.corners);
-  if (normal == Vector3{}) return principal_axes(points_of(q));
-  Vector3 along;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3 edge = q.corners[(k + 1) % 3] - q.corners[k];
-    if (length_sq(edge) > length_sq(along)) along = edge;
-  }
-  along = normalized(along - dot(along, normal) * normal);
-  if (along == Vector3{}) return Obb{}.axes;
-  return {along, cross(normal, along), normal};
-}
-
-Extent extent_of(const QuadraticTriangle& q, const Vector3& direction) {
-  Extent extent;
-  for (const Point3& p : points_of(q)) extent.add(dot(direction, p - Point3{}));
-  const double reach = enlarged(q.error * length(direction)) + distance_rounding;
-  return {extent.lower - reach, extent.upper + reach};
-}
-
-Obb box_of(const QuadraticTriangle& q) {
-  return fit_box(axes_of(q), [&](const Vector3& d) { return extent_of(q, d); });
-}
-
 // The hull of the points is at least this far from p: a plane across the direction to a point nearby.
 double plane_distance(const QuadraticTriangle& q, const Point3& p, const Point3& near) {
   const Vector3 w = normalized(near - p);
@@ -208,6 +178,17 @@ bool apart(const QuadraticTriangle& a, const QuadraticTriangle& b, const Vector3
 
 }  // namespace
 
+std::array<Point3, 6> points_of(const QuadraticTriangle& q) {
+  return {q.corners[0], q.corners[1], q.corners[2], q.middles[0], q.middles[1], q.middles[2]};
+}
+
+Extent extent_of(const QuadraticTriangle& q, const Vector3& direction) {
+  Extent extent;
+  for (const Point3& p : points_of(q)) extent.add(dot(direction, p - Point3{}));
+  const double reach = enlarged(q.error * length(direction)) + distance_rounding;
+  return {extent.lower - reach, extent.upper + reach};
+}
+
 Point3 point_of(const QuadraticTriangle& q, TriangleParameter at) { return blossom(q, at, at); }
 
 QuadraticTriangle restricted(const QuadraticTriangle& q, const std::array<TriangleParameter, 3>& corners) {
@@ -228,165 +209,87 @@ QuadraticTriangle flat_quadratic(const Triangle& triangle) {
   return q;
 }
 
-QuadraticBvh::QuadraticBvh(std::span<const QuadraticTriangle> quadratics, int threads)
-    : quadratics_(quadratics),
-      curved_(quadratics.size()),
-      leaves_((quadratics.size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size),
-      tree_([&] {
-        std::vector<Point3> centres;
-        centres.reserve(quadratics.size());
-        for (std::size_t i = 0; i < quadratics.size(); ++i) {
-          curved_[i] = is_curved(quadratics[i]);
-          Vector3 sum;
-          for (const Point3& x : quadratics[i].corners) sum = sum + (x - Point3{});
-          centres.push_back(Point3{} + (1.0 / 3) * sum);
-        }
-        return WideBvh(centres, threads,
-                       [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
-                         const std::size_t first = boxes.size();
-                         for (const std::uint32_t i : items) boxes.push_back(box_of(quadratics[i]));
-                         leaves_[leaf] = WideNode(std::span(boxes).subspan(first));
-                       });
-      }()) {}
-
-QuadraticFoot QuadraticBvh::foot_on(std::uint32_t piece, const Point3& p) const {
-  const QuadraticTriangle& q = quadratics_[piece];
+QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p) {
+  const QuadraticTriangle& q = set[piece];
+  const bool curved = is_curved(q);
   QuadraticFoot foot;
   foot.piece = piece;
-  foot.at = foot_of(q, curved_[piece] != 0, p);
-  foot.point = curved_[piece] != 0 ? point_of(q, foot.at) : flat_point(q, foot.at);
+  foot.at = foot_of(q, curved, p);
+  foot.point = curved ? point_of(q, foot.at) : flat_point(q, foot.at);
   foot.distance = distance(foot.point, p);
   return foot;
 }
 
-QuadraticTriangle QuadraticBvh::below(const std::array<QuadraticFoot, 3>& feet) const {
-  const std::uint32_t piece = feet[0].piece;
-  const QuadraticTriangle& q = quadratics_[piece];
+QuadraticTriangle below(const PieceSet& set, const std::array<QuadraticFoot, 3>& feet) {
+  const QuadraticTriangle& q = set[feet[0].piece];
   QuadraticTriangle part{{feet[0].point, feet[1].point, feet[2].point}, {}, q.error};
+  const bool curved = is_curved(q);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
-    part.middles[k] = curved_[piece] != 0 ? blossom(q, feet[k].at, feet[next].at)
-                                          : part.corners[k] + 0.5 * (part.corners[next] - part.corners[k]);
+    part.middles[k] = curved ? blossom(q, feet[k].at, feet[next].at)
+                             : part.corners[k] + 0.5 * (part.corners[next] - part.corners[k]);
   }
   return part;
 }
 
-template <class Visit>
-bool QuadraticBvh::any_near(const Point3& p, double reach, const Visit& visit) const {
-  struct Near {
-    float gap;
-    std::uint32_t name;
+QuadraticFoot nearest_foot(const PieceSet& set, const Point3& p, const QuadraticFoot& hint) {
+  QuadraticFoot best = hint;
+  if (hint.distance != INFINITY) best = foot_on(set, hint.piece, p);
+  set.visit_near(p, best.distance, [&](std::uint32_t piece) {
+    if (const QuadraticFoot foot = foot_on(set, piece, p); foot.distance < best.distance) best = foot;
+    return false;
+  });
+  return best;
+}
+
+namespace {
+
+// Splits of quadratics after which a bound is taken as it is.
+constexpr int max_splits = 20'000;
+
+// A lower bound of the distance of p to one piece, as far as it is less than `least`.
+double certain_distance_of(const QuadraticTriangle& q, std::uint32_t piece, const Point3& p, double gap,
+                           double least, int& splits, QuadraticFoot& foot) {
+  const bool curved = is_curved(q);
+  struct Open {
+    QuadraticTriangle part;
+    Corners at;
   };
-  thread_local std::vector<Near> stack;
-  stack.clear();
-  const auto open = [&](const WideNode& boxes, const auto& name) {
-    WideNode::Distances gaps;
-    boxes.distances(p, 0, gaps);
-    const std::size_t begin = stack.size();
-    for (std::size_t i = 0; i < boxes.count(); ++i) {
-      if (static_cast<double>(gaps[i]) <= visit.limit(reach)) stack.push_back({gaps[i], name(i)});
+  std::vector<Open> open{{q, whole_triangle}};
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    const TriangleParameter near = foot_of(next.part, curved, p);
+    const Point3 point = point_of(next.part, near);
+    if (const double between = distance(point, p); between < foot.distance) {
+      const double w = 1 - near.u - near.v;
+      foot = {piece,
+              into_triangle(w * next.at[0].u + near.u * next.at[1].u + near.v * next.at[2].u,
+                            w * next.at[0].v + near.u * next.at[1].v + near.v * next.at[2].v),
+              point, between};
     }
-    // The nearest last, to be taken first.
-    for (std::size_t i = begin + 1; i < stack.size(); ++i) {
-      const Near moved = stack[i];
-      std::size_t k = i;
-      for (; k > begin && stack[k - 1].gap < moved.gap; --k) stack[k] = stack[k - 1];
-      stack[k] = moved;
-    }
-  };
-  const auto open_tree = [&](const TreeNode& node) {
-    open(node, [&](std::size_t i) { return node.names[i]; });
-  };
-  open_tree(tree_.root());
-  while (!stack.empty()) {
-    const Near near = stack.back();
-    stack.pop_back();
-    if (static_cast<double>(near.gap) > visit.limit(reach)) continue;
-    if ((near.name & WideBvh::leaf_bit) == 0) {
-      open_tree(tree_.node(near.name));
+    const double lower = plane_distance(next.part, p, point);
+    if (!curved || lower >= foot.distance - gap || lower - q.error >= least || splits >= max_splits) {
+      least = std::min(least, lower - q.error - distance_rounding);
       continue;
     }
-    const std::uint32_t leaf = near.name & ~WideBvh::leaf_bit;
-    const std::span<const std::uint32_t> items = tree_.leaf(leaf);
-    WideNode::Distances gaps;
-    leaves_[leaf].distances(p, 0, gaps);
-    std::uint32_t left = (1u << items.size()) - 1;
-    while (left != 0) {
-      std::size_t next = 8;
-      for (std::size_t i = 0; i < items.size(); ++i) {
-        if ((left >> i & 1u) != 0 && (next == 8 || gaps[i] < gaps[next])) next = i;
-      }
-      if (static_cast<double>(gaps[next]) > visit.limit(reach)) break;
-      left &= ~(1u << next);
-      if (visit(items[next])) return true;
-    }
+    ++splits;
+    for (const Corners& quarter : quarters(next.at)) open.push_back({restricted(q, quarter), quarter});
   }
-  return false;
+  return least;
 }
 
-QuadraticFoot QuadraticBvh::nearest(const Point3& p, const QuadraticFoot& hint) const {
-  struct Nearest {
-    const QuadraticBvh& tree;
-    const Point3& p;
-    mutable QuadraticFoot best;
-    [[nodiscard]] double limit(double) const { return best.distance; }
-    bool operator()(std::uint32_t i) const {
-      if (const QuadraticFoot foot = tree.foot_on(i, p); foot.distance < best.distance) best = foot;
-      return false;
-    }
-  };
-  Nearest visit{*this, p, hint};
-  if (hint.distance != INFINITY) visit.best = foot_on(hint.piece, p);
-  any_near(p, INFINITY, visit);
-  return visit.best;
-}
+}  // namespace
 
-double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot& foot) const {
-  // Splits of quadratics after which a bound is taken as it is.
-  constexpr int max_splits = 20'000;
-  struct Certain {
-    const QuadraticBvh& tree;
-    const Point3& p;
-    double gap;
-    QuadraticFoot& foot;
-    mutable double least = INFINITY;
-    mutable int splits = 0;
-    [[nodiscard]] double limit(double) const { return least; }
-    bool operator()(std::uint32_t i) const {
-      const QuadraticTriangle& q = tree.quadratics_[i];
-      if (const QuadraticFoot own = tree.foot_on(i, p); own.distance < foot.distance) foot = own;
-      struct Open {
-        QuadraticTriangle part;
-        Corners at;
-      };
-      std::vector<Open> open{{q, whole_triangle}};
-      while (!open.empty()) {
-        const Open next = open.back();
-        open.pop_back();
-        const TriangleParameter near = foot_of(next.part, tree.curved_[i] != 0, p);
-        const Point3 point = point_of(next.part, near);
-        if (const double between = distance(point, p); between < foot.distance) {
-          const double w = 1 - near.u - near.v;
-          foot = {i,
-                  into_triangle(w * next.at[0].u + near.u * next.at[1].u + near.v * next.at[2].u,
-                                w * next.at[0].v + near.u * next.at[1].v + near.v * next.at[2].v),
-                  point, between};
-        }
-        const double lower = plane_distance(next.part, p, point);
-        if (tree.curved_[i] == 0 || lower >= foot.distance - gap || lower - q.error >= least ||
-            splits >= max_splits) {
-          least = std::min(least, lower - q.error - distance_rounding);
-          continue;
-        }
-        ++splits;
-        for (const Corners& quarter : quarters(next.at)) open.push_back({restricted(q, quarter), quarter});
-      }
-      return false;
-    }
-  };
-  Certain visit{*this, p, gap, foot};
-  any_near(p, INFINITY, visit);
-  return std::max(0.0, visit.least);
+double certain_distance(const PieceSet& set, const Point3& p, double gap, QuadraticFoot& foot) {
+  double least = INFINITY;
+  int splits = 0;
+  set.visit_near(p, least, [&](std::uint32_t piece) {
+    if (const QuadraticFoot own = foot_on(set, piece, p); own.distance < foot.distance) foot = own;
+    least = certain_distance_of(set[piece], piece, p, gap, least, splits, foot);
+    return false;
+  });
+  return std::max(0.0, least);
 }
 
 namespace {
@@ -394,7 +297,7 @@ namespace {
 // May the sets of two quadratics meet? The second one is split until it is as small
 // as the first, and flat.
 bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& normal,
-              const QuadraticTriangle& q, bool curved, double flat) {
+              const QuadraticTriangle& q, double flat) {
   const Ball other = ball_of(q);
   const double between = distance(ball.centre, other.centre);
   if (between > enlarged(ball.radius + other.radius) + distance_rounding) return false;
@@ -409,59 +312,44 @@ bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& no
   const double bent = std::max({max_abs(bend(q, 0)), max_abs(bend(q, 1)), max_abs(bend(q, 2))});
   if (small && bent <= flat) return true;
   for (const Corners& quarter : quarters(whole_triangle)) {
-    if (may_meet(part, ball, normal, restricted(q, quarter), curved, flat)) return true;
+    if (may_meet(part, ball, normal, restricted(q, quarter), flat)) return true;
   }
   return false;
 }
 
 }  // namespace
 
-bool QuadraticBvh::may_meet(const QuadraticTriangle& part, double flat) const {
+bool may_meet(const PieceSet& set, const QuadraticTriangle& part, double flat) {
   const Ball ball = ball_of(part);
   const Vector3 normal = unit_normal(part.corners);
-  struct Meet {
-    const QuadraticBvh& tree;
-    const QuadraticTriangle& part;
-    const Ball& ball;
-    const Vector3& normal;
-    double flat;
-    [[nodiscard]] double limit(double reach) const { return reach; }
-    bool operator()(std::uint32_t i) const {
-      return snug::may_meet(part, ball, normal, tree.quadratics_[i], tree.curved_[i] != 0, flat);
-    }
-  };
-  return any_near(ball.centre, ball.radius,
-                  Meet{*this, part, ball, normal, std::max(flat, 4 * distance_rounding)});
+  double reach = ball.radius;
+  return set.visit_near(ball.centre, reach, [&](std::uint32_t piece) {
+    return may_meet(part, ball, normal, set[piece], std::max(flat, 4 * distance_rounding));
+  });
 }
 
 namespace {
 
-struct EachNear {
-  const std::function<void(std::uint32_t)>& visit;
-  [[nodiscard]] double limit(double reach) const { return reach; }
-  bool operator()(std::uint32_t i) const {
-    visit(i);
+void for_each_within(const PieceSet& set, const Ball& ball, const std::function<void(std::uint32_t)>& visit) {
+  double reach = ball.radius;
+  set.visit_near(ball.centre, reach, [&](std::uint32_t piece) {
+    visit(piece);
     return false;
-  }
-};
+  });
+}
 
 }  // namespace
 
-void QuadraticBvh::mark_near(const QuadraticTriangle& part, double reach,
-                             std::span<std::uint8_t> marks) const {
+void mark_near(const PieceSet& set, const QuadraticTriangle& part, double reach,
+               std::span<std::uint8_t> marks) {
   const Ball ball = ball_of(part);
-  const std::function<void(std::uint32_t)> mark = [&](std::uint32_t i) { marks[i] = 1; };
-  any_near(ball.centre, enlarged(ball.radius + reach) + distance_rounding, EachNear{mark});
+  for_each_within(set, {ball.centre, enlarged(ball.radius + reach) + distance_rounding},
+                  [&](std::uint32_t piece) { marks[piece] = 1; });
 }
 
-void QuadraticBvh::for_each_near(const QuadraticTriangle& part,
-                                 const std::function<void(std::uint32_t)>& visit) const {
-  const Ball ball = ball_of(part);
-  any_near(ball.centre, ball.radius, EachNear{visit});
-}
-
-std::size_t QuadraticBvh::bytes() const {
-  return curved_.capacity() + leaves_.capacity() * sizeof(WideNode) + tree_.bytes();
+void for_each_near(const PieceSet& set, const QuadraticTriangle& part,
+                   const std::function<void(std::uint32_t)>& visit) {
+  for_each_within(set, ball_of(part), visit);
 }
 
 }  // namespace snug

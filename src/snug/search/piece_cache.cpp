@@ -1,0 +1,151 @@
+#include <snug/search/piece_cache.h>
+
+#include <algorithm>
+
+namespace snug {
+namespace {
+
+SplitNode split_node(const SurfaceBvh& model, const Patch& parent) {
+  thread_local Patch child;
+  std::array<PieceBuild, 4> pieces;
+  for (unsigned i = 0; i < 4; ++i) {
+    split(parent, i, child);
+    pieces[i] = build_piece(model.surface().library(), child, model.method());
+  }
+  return SplitNode(pieces);
+}
+
+}  // namespace
+
+PieceCache::Roots::Place& PieceCache::Roots::place_of(std::uint32_t patch) {
+  const std::size_t mask = places_.size() - 1;
+  std::size_t at = (patch * 0x9e3779b97f4a7c15u >> 32) & mask;
+  while (places_[at].round == round_ && places_[at].patch != patch) at = (at + 1) & mask;
+  return places_[at];
+}
+
+std::uint32_t& PieceCache::Roots::operator[](std::uint32_t patch) {
+  if (2 * (count_ + 1) > places_.size()) {
+    std::vector<Place> old(std::max<std::size_t>(64, 2 * places_.size()));
+    old.swap(places_);
+    for (const Place& place : old) {
+      if (place.round == round_) place_of(place.patch) = place;
+    }
+  }
+  Place& place = place_of(patch);
+  if (place.round != round_) {
+    place = {patch, round_, none};
+    ++count_;
+  }
+  return place.entry;
+}
+
+void PieceCache::Roots::clear() {
+  count_ = 0;
+  if (++round_ == 0) *this = {};
+}
+
+std::size_t PieceCache::bytes() const {
+  return splits_.size() * sizeof(Split) + entries_.size() * sizeof(Entry) + bytes_of_points_ +
+         roots_.bytes() + open_nodes_.bytes() + open_pairs_.bytes();
+}
+
+void PieceCache::begin(std::size_t max_bytes) {
+  touched_ = 0;
+  if (++query_ == 0 || bytes() > max_bytes) {
+    roots_ = {};
+    splits_.clear();
+    entries_.clear();
+    split_count_ = entry_count_ = 0;
+    bytes_of_points_ = 0;
+    query_ = 1;
+  }
+}
+
+void PieceCache::renew(const SurfaceBvh& model) {
+  model_ = &model;
+  roots_.clear();
+  split_count_ = entry_count_ = 0;
+}
+
+template <class Make>
+std::uint32_t PieceCache::add(PatchId root, const Make& make) {
+  if (entry_count_ == entries_.size()) entries_.emplace_back();
+  Entry& entry = entries_[entry_count_];
+  const std::size_t before = entry.piece.patch.points.capacity();
+  entry.piece.root = root;
+  make(entry.piece.patch);
+  entry.bounded = false;
+  entry.children.fill(none);
+  entry.split = none;
+  bytes_of_points_ += (entry.piece.patch.points.capacity() - before) * sizeof(Vector3);
+  return static_cast<std::uint32_t>(entry_count_++);
+}
+
+std::uint32_t PieceCache::root_entry(PatchId root) {
+  std::uint32_t& entry = roots_[root.value()];
+  if (entry == none) entry = add(root, [&](Patch& patch) { model_->surface().patch(root, patch); });
+  return entry;
+}
+
+std::uint32_t PieceCache::child_entry(std::uint32_t parent, unsigned child) {
+  const Entry& whole = entries_[parent];
+  if (whole.children[child] != none) return whole.children[child];
+  const std::uint32_t made =
+      add(whole.piece.root, [&](Patch& patch) { split(whole.piece.patch, child, patch); });
+  entries_[parent].children[child] = made;
+  return made;
+}
+
+std::uint32_t PieceCache::entry_of(const Node& node) {
+  if (node.kind == Node::Kind::patch) return root_entry(model_->patch(node.owner, node.place));
+  return child_entry(splits_[node.owner].parent, node.place);
+}
+
+std::uint32_t PieceCache::entry_of(const PieceName& name) {
+  std::uint32_t entry = root_entry(name.patch);
+  for (unsigned k = 0; k < name.path.level(); ++k) entry = child_entry(entry, name.path.digit(k));
+  return entry;
+}
+
+PieceName PieceCache::name(const Node& node) {
+  const Piece& piece = entries_[entry_of(node)].piece;
+  return {piece.root, piece.patch.path};
+}
+
+const Piece& PieceCache::bounded(std::uint32_t i) {
+  Entry& entry = entries_[i];
+  if (!entry.bounded) {
+    entry.piece.offset = offset_of(model_->surface().library(), entry.piece.patch, points_, model_->method());
+    entry.bounded = true;
+  }
+  return entry.piece;
+}
+
+PieceCache::Opened PieceCache::open(const Node& node) {
+  if (node.kind == Node::Kind::tree) {
+    const std::uint32_t name = static_cast<const TreeNode*>(node.boxes)->names[node.place];
+    if ((name & WideBvh::leaf_bit) == 0) return {&model_->tree().node(name), Node::Kind::tree, 0};
+    const std::uint32_t leaf = name & ~WideBvh::leaf_bit;
+    return {&model_->leaf(leaf), Node::Kind::patch, leaf};
+  }
+  const std::uint32_t parent = entry_of(node);
+  Entry& whole = entries_[parent];
+  if (whole.split == none) {
+    const Split made{split_node(*model_, whole.piece.patch), parent, 0};
+    if (split_count_ == splits_.size()) {
+      splits_.push_back(made);
+    } else {
+      splits_[split_count_] = made;
+    }
+    whole.split = static_cast<std::uint32_t>(split_count_++);
+  }
+  Split& split = splits_[whole.split];
+  if (split.query != query_) {
+    split.query = query_;
+    ++touched_;
+  }
+  return {&split.pieces, Node::Kind::piece, whole.split};
+}
+
+}  // namespace snug

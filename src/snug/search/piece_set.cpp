@@ -1,0 +1,194 @@
+#include <snug/search/piece_set.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <snug/bvh/obb.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
+#include <snug/search/feet.h>
+#include <snug/search/piece.h>
+#include <snug/surface/evaluate.h>
+#include <snug/surface/unscale.h>
+#include <support/direction.h>
+#include <support/parallel.h>
+
+namespace snug {
+
+// Pieces, their names, and which one each is a part of.
+struct PieceSet::Made {
+  std::vector<QuadraticTriangle> quadratics;
+  std::vector<PieceName> names;
+  std::vector<std::uint32_t> origins;
+
+  void add(const QuadraticTriangle& quadratic, const PieceName& name) {
+    quadratics.push_back(quadratic);
+    names.push_back(name);
+  }
+};
+
+namespace {
+
+// Below this error, in scaled units, roundings are what is left.
+constexpr double min_error = 0x1p-46;
+// Of points of sets that are given.
+constexpr double given_point_error = 0x1p-48;
+
+// How many pieces there are, for all threads.
+class Count {
+ public:
+  explicit Count(std::uint64_t most) : max_(most) {}
+  void add() { count_.fetch_add(1, std::memory_order_relaxed); }
+  [[nodiscard]] bool too_many() const { return count_.load(std::memory_order_relaxed) > max_; }
+
+ private:
+  std::uint64_t max_;
+  std::atomic<std::uint64_t> count_{0};
+};
+
+// Calls add(quadratic, name) for the parts of a piece, with some of them only once there are too many.
+template <class Add>
+void split_to(double error, const LimitSurface& surface, PatchId root, const Patch& patch, Count& count,
+              const Add& add) {
+  if (count.too_many()) return;
+  const QuadraticTriangle quadratic = quadratic_triangle(surface.library(), patch);
+  if (quadratic.error <= error || quadratic.error <= min_error ||
+      patch.path.level() >= PiecePath::max_level) {
+    count.add();
+    return add(quadratic, PieceName{root, patch.path});
+  }
+  for (unsigned child = 0; child < 4; ++child) {
+    split_to(error, surface, root, split(patch, child), count, add);
+  }
+}
+
+QuadraticTriangle in_units(const QuadraticTriangle& q, PowerOfTwo units) {
+  QuadraticTriangle result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.corners[k] = units.apply(q.corners[k]);
+    result.middles[k] = units.apply(q.middles[k]);
+  }
+  result.error = units.apply(q.error) + 8 * underflow_error;
+  return result;
+}
+
+std::array<Vector3, 3> axes_of(const QuadraticTriangle& q) {
+  const Vector3 normal = unit_normal(q.corners);
+  if (normal == Vector3{}) return principal_axes(points_of(q));
+  Vector3 along;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 edge = q.corners[(k + 1) % 3] - q.corners[k];
+    if (length_sq(edge) > length_sq(along)) along = edge;
+  }
+  along = normalized(along - dot(along, normal) * normal);
+  if (along == Vector3{}) return Obb{}.axes;
+  return {along, cross(normal, along), normal};
+}
+
+Obb box_of(const QuadraticTriangle& q) {
+  return fit_box(axes_of(q), [&](const Vector3& d) { return extent_of(q, d); });
+}
+
+}  // namespace
+
+// The pieces that make(i, count, made) adds for each i, in their order.
+template <class Make>
+PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, int threads,
+                                       const WorkMonitor& monitor, const Make& make) {
+  Count counted(most);
+  constexpr std::size_t block = 64;
+  std::vector<Made> parts((count + block - 1) / block);
+  parallel_for(parts.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      monitor.checkpoint();
+      for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
+        if (counted.too_many()) return;
+        make(i, counted, parts[b]);
+        parts[b].origins.resize(parts[b].names.size(), static_cast<std::uint32_t>(i));
+      }
+    }
+  });
+  Made all;
+  if (counted.too_many()) return all;
+  for (const Made& part : parts) {
+    all.quadratics.insert(all.quadratics.end(), part.quadratics.begin(), part.quadratics.end());
+    all.names.insert(all.names.end(), part.names.begin(), part.names.end());
+    all.origins.insert(all.origins.end(), part.origins.begin(), part.origins.end());
+  }
+  return all;
+}
+
+void PieceSet::take(Made&& made) {
+  quadratics_ = std::move(made.quadratics);
+  names_ = std::move(made.names);
+  tree_.reset();
+}
+
+PieceSet::PieceSet(const LimitSurface& surface, double error, int threads, const WorkMonitor& monitor,
+                   std::uint64_t most, PowerOfTwo units)
+    : surface_(&surface), units_(units) {
+  const double own_error = units.inverse().apply(error);
+  take(made_in_order(
+      surface.patch_count(), most, threads, monitor, [&](std::size_t i, Count& count, Made& made) {
+        const PatchId root(i);
+        if (!surface.has_patch(root)) return;
+        split_to(
+            own_error, surface, root, surface.patch(root), count,
+            [&](const QuadraticTriangle& q, const PieceName& name) { made.add(in_units(q, units), name); });
+      }));
+}
+
+std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which, double error, int threads,
+                                            const WorkMonitor& monitor, std::uint64_t most) {
+  if (surface_ == nullptr) return {};
+  const double own_error = units_.inverse().apply(error);
+  Made made = made_in_order(size(), most, threads, monitor, [&](std::size_t i, Count& count, Made& parts) {
+    const PieceName& name = names_[i];
+    if (which[i] == 0) {
+      count.add();
+      parts.add(quadratics_[i], name);
+      return;
+    }
+    Patch patch = surface_->patch(name.patch);
+    for (unsigned k = 0; k < name.path.level(); ++k) patch = split(patch, name.path.digit(k));
+    split_to(
+        own_error, *surface_, name.patch, patch, count,
+        [&](const QuadraticTriangle& q, const PieceName& part) { parts.add(in_units(q, units_), part); });
+  });
+  std::vector<std::uint32_t> origins = std::move(made.origins);
+  if (!made.names.empty()) take(std::move(made));
+  return origins;
+}
+
+BoundedPoint PieceSet::point(std::size_t piece, TriangleParameter at) const {
+  if (surface_ == nullptr) return {point_of(quadratics_[piece], at), given_point_error};
+  const Patch patch = surface_->patch(names_[piece].patch);
+  return unscaled(limit_point(patch, to_face(names_[piece].path, at)).from(patch.origin), units_);
+}
+
+std::optional<Place> PieceSet::place(std::size_t piece, TriangleParameter at) const {
+  if (surface_ == nullptr) return std::nullopt;
+  return place_of(*surface_, names_[piece], at);
+}
+
+void PieceSet::prepare(int threads) {
+  if (prepared()) return;
+  std::vector<Point3> centres;
+  centres.reserve(size());
+  for (const QuadraticTriangle& q : quadratics_) {
+    Vector3 sum;
+    for (const Point3& x : q.corners) sum = sum + (x - Point3{});
+    centres.push_back(Point3{} + (1.0 / 3) * sum);
+  }
+  std::vector<WideNode> leaves((size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size);
+  WideBvh nodes(centres, threads,
+                [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
+                  const std::size_t first = boxes.size();
+                  for (const std::uint32_t i : items) boxes.push_back(box_of(quadratics_[i]));
+                  leaves[leaf] = WideNode(std::span(boxes).subspan(first));
+                });
+  tree_ = std::make_shared<const Tree>(Tree{std::move(nodes), std::move(leaves)});
+}
+
+}  // namespace snug

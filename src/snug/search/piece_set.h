@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <snug/bounds/quadratic.h>
+#include <snug/bvh/wide_bvh.h>
+#include <snug/evaluate.h>
+#include <snug/run.h>
+#include <snug/surface/piece_name.h>
+
+namespace snug {
+
+/// A set of points by its pieces, and a tree over them. Each piece is a quadratic triangle that stands for all points within its
+/// error: of a surface, whose pieces can be made finer, or of sets that are given, such as triangles, which stay as they are. Copies
+/// share the tree. May be read by many threads once it is prepared.
+class PieceSet {
+ public:
+  /// None.
+  PieceSet() = default;
+  /// Sets that stay as they are.
+  /// Requires:  coordinates at most about 2; finite errors.
+  explicit PieceSet(std::vector<QuadraticTriangle> given) : quadratics_(std::move(given)) {}
+  /// Pieces that together are a surface, each split until its error is at most `error`. Where rounding or the last level ends that,
+  /// the error is larger. None if these would be more than `most`; memory stays below what so many take. In units of which the
+  /// surface's scaled one is `units` many.
+  /// Guarantee: the same for any number of threads.
+  /// Requires:  the surface outlives the set and its copies.
+  /// Errors:    Interrupted.
+  PieceSet(const LimitSurface& surface, double error, int threads, const WorkMonitor& monitor = {},
+           std::uint64_t most = UINT64_MAX, PowerOfTwo units = {});
+
+  [[nodiscard]] std::size_t size() const { return quadratics_.size(); }
+  [[nodiscard]] bool is_surface() const { return surface_ != nullptr; }
+  [[nodiscard]] const QuadraticTriangle& operator[](std::size_t piece) const { return quadratics_[piece]; }
+  /// Of a piece of a surface.
+  [[nodiscard]] const PieceName& name(std::size_t piece) const { return names_[piece]; }
+  /// The point itself at a parameter of a piece, and where on the surface that is; nothing for sets that are given.
+  [[nodiscard]] BoundedPoint point(std::size_t piece, TriangleParameter at) const;
+  [[nodiscard]] std::optional<Place> place(std::size_t piece, TriangleParameter at) const;
+
+  /// Splits those that `which` names until errors are at most `error`. Returns for each piece which former one it is a part of; none,
+  /// and all as it was, for sets that are given, and where there would be more than `most`. To be prepared again.
+  /// Requires:  which.size() == size().
+  std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error, int threads,
+                                    const WorkMonitor& monitor = {}, std::uint64_t most = UINT64_MAX);
+
+  /// Makes the tree, if there is none.
+  /// Requires:  one piece or more, here and below.
+  void prepare(int threads);
+  [[nodiscard]] bool prepared() const { return tree_ != nullptr; }
+  /// Calls visit(piece) for those whose boxes are at most `reach` from p, about the nearest first, until it returns true; a visit may
+  /// make `reach` smaller. Did one return true?
+  /// Requires:  prepared().
+  template <class Visit>
+  bool visit_near(const Point3& p, double& reach, const Visit& visit) const;
+
+ private:
+  struct Tree {
+    WideBvh nodes;
+    std::vector<WideNode> leaves;  // boxes around the pieces of each leaf
+  };
+  struct Made;
+  template <class Make>
+  static Made made_in_order(std::size_t count, std::uint64_t most, int threads, const WorkMonitor& monitor,
+                            const Make& make);
+  void take(Made&& made);
+
+  const LimitSurface* surface_ = nullptr;
+  PowerOfTwo units_;
+  std::vector<QuadraticTriangle> quadratics_;
+  std::vector<PieceName> names_;
+  std::shared_ptr<const Tree> tree_;
+};
+
+template <class Visit>
+bool PieceSet::visit_near(const Point3& p, double& reach, const Visit& visit) const {
+  struct Near {
+    float gap;
+    std::uint32_t name;
+  };
+  // Seven children a level wait at most, of eleven levels.
+  std::array<Near, 12 * WideNode::width> stack;
+  std::size_t waiting = 0;
+  const auto is_near = [&](float gap) { return static_cast<double>(gap) <= reach; };
+  const auto open = [&](const TreeNode& node) {
+    WideNode::Distances gaps;
+    node.distances(p, 0, gaps);
+    const std::size_t begin = waiting;
+    for (std::size_t i = 0; i < node.count(); ++i) {
+      if (!is_near(gaps[i])) continue;
+      // The nearest last, to be taken first.
+      std::size_t k = waiting++;
+      for (; k > begin && stack[k - 1].gap < gaps[i]; --k) stack[k] = stack[k - 1];
+      stack[k] = {gaps[i], node.names[i]};
+    }
+  };
+  open(tree_->nodes.root());
+  while (waiting > 0) {
+    const Near near = stack[--waiting];
+    if (!is_near(near.gap)) continue;
+    if ((near.name & WideBvh::leaf_bit) == 0) {
+      open(tree_->nodes.node(near.name));
+      continue;
+    }
+    const std::uint32_t leaf = near.name & ~WideBvh::leaf_bit;
+    const std::span<const std::uint32_t> items = tree_->nodes.leaf(leaf);
+    WideNode::Distances gaps;
+    tree_->leaves[leaf].distances(p, 0, gaps);
+    for (std::uint32_t left = (1u << items.size()) - 1; left != 0;) {
+      auto next = static_cast<std::size_t>(std::countr_zero(left));
+      for (std::size_t i = next + 1; i < items.size(); ++i) {
+        if ((left >> i & 1u) != 0 && gaps[i] < gaps[next]) next = i;
+      }
+      if (!is_near(gaps[next])) break;
+      left &= ~(1u << next);
+      if (visit(items[next])) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace snug

@@ -1,0 +1,63 @@
+#include <snug/search/piece_cache.h>
+
+#include <gtest/gtest.h>
+#include <testing/scheme_surfaces.h>
+
+#include <random>
+
+namespace snug::piece_cache_test {
+namespace {
+
+// A patch, or a piece some levels below one.
+Node some_node(PieceCache& cache, std::mt19937_64& random) {
+  Node node = cache.root();
+  for (std::size_t level = random() % 4; !node.bounded() || level > 0; level -= node.bounded()) {
+    if (!PieceCache::can_open(node)) break;
+    const PieceCache::Opened opened = cache.open(node);
+    node = opened.child(random() % opened.count());
+  }
+  return node;
+}
+
+void expect_same(const Piece& x, const Piece& y) {
+  EXPECT_EQ(x.root, y.root);
+  EXPECT_EQ(x.patch.path, y.patch.path);
+  EXPECT_EQ(x.patch.points, y.patch.points);
+  EXPECT_EQ(x.offset.base, y.offset.base);
+  EXPECT_EQ(x.offset.radius, y.offset.radius);
+}
+
+// By node, by name, and split by split: the same bits, whatever came before.
+TEST(piece_cache, knows_a_piece_by_its_name_too) {
+  std::mt19937_64 random(3);
+  testing::for_each_surface(5, [&](const testing::NamedSurface& named) {
+    SCOPED_TRACE(named.name);
+    bool any = false;
+    for (std::size_t p = 0; p < named.surface.patch_count(); ++p)
+      any = any || named.surface.has_patch(PatchId(p));
+    if (!any) return;
+    const SurfaceBvh model(named.surface);
+    PieceCache cache(model);
+    BoundingPoints scratch;
+    for (int trial = 0; trial < 30; ++trial) {
+      if (trial % 10 == 9) cache.begin(0);
+      if (trial % 10 == 5) cache.renew(model);
+      const Node node = some_node(cache, random);
+      const PieceName name = cache.name(node);
+      Patch patch = named.surface.patch(name.patch);
+      for (unsigned k = 0; k < name.path.level(); ++k) patch = split(patch, name.path.digit(k));
+      const Piece made = make_piece(named.surface.library(), name.patch, patch, scratch, model.method());
+      expect_same(cache.piece(node), made);
+      PieceCache other(model);
+      expect_same(other.piece(name), made);
+      EXPECT_EQ(&cache.piece(name), &cache.piece(node));
+      EXPECT_EQ(&cache.patch(name), &cache.patch(node));
+    }
+    EXPECT_GT(cache.bytes(), 0u);
+    cache.begin(0);
+    EXPECT_LT(cache.bytes(), 100'000u);
+  });
+}
+
+}  // namespace
+}  // namespace snug::piece_cache_test
