@@ -159,7 +159,7 @@ struct LimitPoint {
   [[gnu::always_inline]] friend bool operator==(const LimitPoint&, const LimitPoint&) = default;
 };
 
-/// A cache of split pieces and their bounds, filled by queries. It makes later queries on the same surfaces
+/// Split pieces, their bounds and some answers, kept by queries. It makes later queries on the same surfaces
 /// several times faster and never changes an answer. For one thread at a time.
 ///
 /// Guarantee: memory is bounded: beyond max_bytes() the least recently used entries are dropped. It does not

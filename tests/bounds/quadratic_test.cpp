@@ -6,6 +6,7 @@
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
 #include <snug/bounds/bounding_points.h>
+#include <snug/bvh/obb.h>
 #include <snug/patch/evaluate.h>
 #include <support/scaling.h>
 #include <testing/containment.h>
@@ -42,7 +43,19 @@ bool within_error(const QuadraticTriangle& q, long double u, long double v, cons
     sq += (at[a] - limit[a]) * (at[a] - limit[a]);
     size += std::fabs(at[a]);
   }
-  return std::sqrt(sq) <= q.error + 1.8L * known + 1e-18L * size + 1e-160L;
+  // Along the normal, and along some other directions.
+  const auto along = [&](const Vector3& w) {
+    long double sum = 0;
+    for (std::size_t a = 0; a < 3; ++a) sum += w[a] * (at[a] - limit[a]);
+    return std::fabs(sum);
+  };
+  const long double doubt = 1.8L * known + 1e-18L * size + 1e-160L;
+  bool near = std::sqrt(sq) <= q.error + doubt && along(q.normal) <= q.normal_error + doubt;
+  for (const Vector3& w : {Vector3{1, 0, 0}, Vector3{0.6, 0, -0.8}, q.normal,
+                           cross(q.normal, Vector3{0, 0.8, 0.6}), 0.6 * q.normal + Vector3{0, 0, 0.8}}) {
+    near = near && along(w) <= error_along(w, q.normal, q.error, q.normal_error) + doubt;
+  }
+  return near;
 }
 
 class Quadratics {
@@ -199,7 +212,7 @@ TEST(quadratic_rows, bound_a_piece_at_a_corner_by_its_layout_closely) {
         const auto limits = limit_corners(patch);
         std::array<Vector3, 6> linear{limits[0], limits[1], limits[2]};
         for (std::size_t k = 0; k < 3; ++k) linear[3 + k] = 0.5 * (linear[k] + linear[(k + 1) % 3]);
-        const double distance = library.quadratic_rows(kind).distance(kind, patch, linear);
+        const double distance = library.quadratic_rows(kind).distance(kind, patch, linear, {}).any;
         double sampled = 0;
         for (int j = 0; j <= 16; ++j) {
           for (int i = 0; i + j <= 16; ++i) {

@@ -130,6 +130,12 @@ struct AnySet {
     for (std::size_t k = 0; k < 3; ++k)
       set.net[3 + k] = set.net[k] + 0.5 * (set.net[(k + 1) % 3] - set.net[k]) + vector(bend);
     const double off = set.error < INFINITY ? set.error : 0;
+    const bool flat = random() % 2 == 0;
+    if (flat) {
+      set.normal = vector(1);
+      set.normal = (1 / length(set.normal)) * set.normal;
+      set.normal_error = 0.1 * off;
+    }
     std::uniform_real_distribution<double> unit(0, 1);
     for (int i = 0; i < 12; ++i) {
       double u = unit(random), v = unit(random);
@@ -139,8 +145,10 @@ struct AnySet {
       Vector3 p;
       const std::array weights{r * r, u * u, v * v, 2 * r * u, 2 * u * v, 2 * r * v};
       for (std::size_t k = 0; k < 6; ++k) p = p + weights[k] * (set.net[k] - centre);
-      const Vector3 away = vector(1);
-      points.push_back(centre + p + off * (1 - 1e-9) / length(away) * away);
+      Vector3 away = vector(1);
+      away = off * (1 - 1e-9) / length(away) * away;
+      if (flat) away = away - 0.9 * dot(set.normal, away) * set.normal;
+      points.push_back(centre + p + away);
     }
     // A box that holds these points, and perhaps all of the net.
     std::vector<Point3> held = points;

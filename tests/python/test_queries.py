@@ -14,7 +14,7 @@ def test_a_verdict_is_a_truth(bracket, pin):
     assert plain.lower <= hit.lower and hit.lower >= hit.upper / 2
     assert hit.verdict == "separated" and not hit and hit.separated and not hit.colliding
     assert 0 < hit.lower <= hit.upper and hit.points.shape == (2, 3) and hit.stats["box_tests"] > 0
-    assert repr(hit).startswith("<snug.Collision separated, distance 0.012")
+    assert repr(hit).startswith("<snug.Collision separated, distance 0.01")
     assert snug.collide(bracket, pin, pose_b=moved(0, 0, 0.5)).colliding
     touch = snug.collide(bracket, pin, pose_b=moved(0, 0, 0.5), prove_contact=True)
     assert touch and touch.verdict == "intersecting" and touch.upper == 0

@@ -246,20 +246,21 @@ TEST(collide, planes_between_quadratics_hold_for_directions_of_any_length) {
   SearchStats stats;
   PairWalk walk(frames, stats, WideNode::Gaps::lines);
   PiecePairs pieces(frames, stats);
-  std::vector<NodePair> pairs{walk.roots()};
-  while (!pairs.back().bounded()) {
-    const NodePair next = pairs.back();
-    pairs.pop_back();
-    walk.open(next, INFINITY, pairs);
+  Frontier<NodePair> open;
+  open.start(Order::last_first, walk.roots());
+  NodePair pair_of_patches = open.take();
+  while (!pair_of_patches.bounded()) {
+    walk.open(pair_of_patches, INFINITY, open);
+    pair_of_patches = open.take();
   }
   const Vector3 direction{3, 0.2, 0.1};
-  const double gap = pieces.gap_along(pairs.back().nodes, direction);
+  const double gap = pieces.gap_along(pair_of_patches.nodes, direction);
   ASSERT_GT(gap, 0);
   for (int exponent = -1073; exponent < 1000; ++exponent) {
     const Vector3 scaled{std::ldexp(direction.x, exponent), std::ldexp(direction.y, exponent),
                          std::ldexp(direction.z, exponent)};
     if (scaled.z * 2 < DBL_MIN) continue;  // another direction
-    EXPECT_LE(pieces.gap_along(pairs.back().nodes, scaled), gap * (1 + 1e-12)) << exponent;
+    EXPECT_LE(pieces.gap_along(pair_of_patches.nodes, scaled), gap * (1 + 1e-12)) << exponent;
   }
 }
 

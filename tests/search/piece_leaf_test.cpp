@@ -26,7 +26,8 @@ struct Sample {
 };
 
 struct Counts {
-  std::size_t samples = 0, records = 0, near_error = 0, near_extent = 0, distances = 0, narrow = 0;
+  std::size_t samples = 0, records = 0, near_error = 0, near_extent = 0, distances = 0, narrow = 0,
+              sharper = 0;
   unsigned deepest = 0;
 };
 
@@ -52,9 +53,14 @@ void expect_known(const Node& node, const Sample& sample, const Vector3& w, cons
   const long double size =
       std::sqrt(static_cast<long double>(w.x) * w.x + static_cast<long double>(w.y) * w.y +
                 static_cast<long double>(w.z) * w.z);
+  if (size == 0) return;
+  const double along = record.error_along(static_cast<double>(1 / size) * w);
+  ASSERT_LE(along, record.error() * (1 + 1e-6)) << name;
   const long double height = w.x * from[0] + w.y * from[1] + w.z * from[2],
-                    extent = record.extent(w) + size * record.error();
+                    extent = record.extent(w) + size * along;
   ASSERT_LE(height, extent + size * known) << name << ": beyond the extent";
+  ASSERT_LE(std::fabs(w.x * off[0] + w.y * off[1] + w.z * off[2]), size * (along + known)) << name;
+  counts.sharper += along < 0.75 * record.error();
   counts.near_extent += extent - height < 0.1L * size * node.size();
 }
 
@@ -159,6 +165,7 @@ TEST(piece_record, holds_limit_points_of_every_kind) {
   EXPECT_GE(counts.deepest, 18u);
   EXPECT_GT(counts.near_error, testing::fewer(200));
   EXPECT_GT(counts.near_extent, testing::fewer(200));
+  EXPECT_GT(counts.sharper, counts.samples / 8);
   EXPECT_GT(counts.narrow, counts.distances / 3);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -9,8 +10,19 @@
 #include <snug/mesh.h>
 
 namespace snug {
+
 struct BoundTable;
 class Kind;
+
+/// Upper bounds for the difference of a patch and a quadratic over all parameters: of its length, and of its part along a direction.
+struct Apart {
+  double any = 0, along = 0;
+  void add(const Apart& other) {
+    any = std::max(any, other.any);
+    along = std::max(along, other.along);
+  }
+};
+
 }  // namespace snug
 
 /// The loops that bounds spend their time in, on the widest vectors of the processor, chosen at run time.
@@ -65,10 +77,11 @@ struct Reach {
                                                            const Vector3& a, const Vector3& b,
                                                            const Vector3& c);
 
-/// Largest distance of point r from the sum of weights[k points.count + r] quadratic[k], as computed: each
-/// difference has six products and six subtractions a coordinate. Infinite where one is not finite.
-[[nodiscard]] double farthest_from_quadratic(const Coordinates& points, const double* weights,
-                                             const std::array<Vector3, 6>& quadratic);
+/// The largest distance of point r from the sum of weights[k points.count + r] quadratic[k], and its part along a direction, as
+/// computed: each difference has six products and six subtractions a coordinate. Infinite where one is not finite.
+[[nodiscard]] Apart farthest_from_quadratic(const Coordinates& points, const double* weights,
+                                            const std::array<Vector3, 6>& quadratic,
+                                            const Vector3& direction);
 
 /// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
 /// one split of de Casteljau's, fit; a patch a lane. A negative radius is no answer: take the general way.

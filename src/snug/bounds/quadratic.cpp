@@ -10,6 +10,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <support/contract.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {
@@ -53,13 +54,20 @@ double largest_of(const Quadratic& q) {
 }
 
 // From the middle of the quadratic's corners.
-double by_hulls(const Patch& net, const Quadratic& q) {
+Apart by_hulls(const Patch& net, const Quadratic& q, const Vector3& normal) {
   const Vector3 middle = (1.0 / 3) * (q[0] + q[1] + q[2]);
-  double patch_sq = 0, quadratic_sq = 0;
-  for (const Vector3& p : net.points) patch_sq = std::max(patch_sq, length_sq(p - middle));
-  for (const Vector3& p : q) quadratic_sq = std::max(quadratic_sq, length_sq(p - middle));
+  double patch_sq = 0, quadratic_sq = 0, patch_along = 0, quadratic_along = 0;
+  const auto take = [&](const Vector3& p, double& sq, double& along) {
+    const Vector3 v = p - middle;
+    sq = std::max(sq, length_sq(v));
+    along = std::max(along, std::fabs(dot(normal, v)));
+  };
+  for (const Vector3& p : net.points) take(p, patch_sq, patch_along);
+  for (const Vector3& p : q) take(p, quadratic_sq, quadratic_along);
   const double roundings = 16 * unit_roundoff * (net.largest + largest_of(q)) + tiny;
-  return enlarged(std::sqrt(patch_sq) + std::sqrt(quadratic_sq) + spatial_error(net.error + roundings));
+  const double off = spatial_error(net.error + roundings);
+  return {enlarged(std::sqrt(patch_sq) + std::sqrt(quadratic_sq) + off),
+          enlarged(patch_along + quadratic_along + off)};
 }
 
 // Levels of the rows that say where the limit points of a layout are, and how large basis functions.
@@ -186,19 +194,21 @@ void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
 // Of the layout's image under the affine map l that takes its limit corners to those of the patch, as
 // computed: patch - l = sum d_i N_i with d_i = c_i - l(layout_i), and l less the quadratic is what the layout
 // is off the parameters, and a quadratic.
-double QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadratic& q) const {
-  if (layout_.empty()) return INFINITY;
+Apart QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadratic& q,
+                              const Vector3& normal) const {
+  if (layout_.empty()) return {INFINITY, INFINITY};
   std::array<Vector3, 3> corner;
   for (std::size_t k = 0; k < 3; ++k) corner[k] = kind.corner_limits().apply<Vector3>(k, patch.points);
   const Vector3 along_u = corner[1] - corner[0], along_v = corner[2] - corner[0];
   double size = std::max(patch.largest, largest_of(q));
   for (const Vector3& c : corner) size = std::max(size, max_abs(c));
   Vector3 by_functions;
-  double reach = 0;
+  double reach = 0, functions_along = 0;
   for (std::size_t i = 0; i < layout_.size(); ++i) {
     const auto [u, v] = layout_[i];
     const Vector3 off = patch.points[i] - (corner[0] + u * along_u + v * along_v);
     for (std::size_t a = 0; a < 3; ++a) by_functions[a] += largest_[i] * std::fabs(off[a]);
+    functions_along += largest_[i] * std::fabs(dot(normal, off));
     reach += largest_[i] * (1 + std::fabs(u) + std::fabs(v));
   }
   const double off_error = reach * (patch.error + 16 * unit_roundoff * size);
@@ -207,13 +217,18 @@ double QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadr
     linear[k] = corner[k] - q[k];
     linear[3 + k] = 0.5 * (corner[k] + corner[(k + 1) % 3]) - q[3 + k];
   }
-  double rest_sq = 0;
+  double rest_sq = 0, rest_along = 0;
   for (const auto& [u, v] : offsets_) {
     const Vector3 by_layout = u * along_u + v * along_v;
-    for (const Vector3& b : linear) rest_sq = std::max(rest_sq, length_sq(by_layout + b));
+    for (const Vector3& b : linear) {
+      rest_sq = std::max(rest_sq, length_sq(by_layout + b));
+      rest_along = std::max(rest_along, std::fabs(dot(normal, by_layout + b)));
+    }
   }
   const double roundings = 8 * (offset_error_ + 64 * unit_roundoff) * size;
-  return enlarged(length(by_functions) + std::sqrt(rest_sq) + spatial_error(off_error) + roundings + tiny);
+  const double doubt = spatial_error(off_error) + roundings + tiny;
+  return {enlarged(length(by_functions) + std::sqrt(rest_sq) + doubt),
+          enlarged(functions_along + rest_along + doubt)};
 }
 
 QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind) {
@@ -241,11 +256,12 @@ namespace {
 class Comparison {
  public:
   // Of a patch in its kind's order, and its bounding points.
-  [[nodiscard]] double distance(BoundsCache& library, const Patch& patch, const Quadratic& q,
-                                const BoundingPoints& hull) {
+  [[nodiscard]] Apart distance(BoundsCache& library, const Patch& patch, const Quadratic& q,
+                               const Vector3& normal, const BoundingPoints& hull) {
     library_ = &library;
+    normal_ = normal;
     opened_ = 0;
-    farthest_ = 0;
+    farthest_ = {};
     const Kind& kind = *patch.kind;
     if (!kind.cacheable() || (kind.polynomial() && kind.form().degree == 1)) {
       add(patch, q, 0, 0);
@@ -275,7 +291,7 @@ class Comparison {
   // than `size`.
   void compare(const kernels::Coordinates& points, double error, const BoundingRows& rows, const Quadratic& q,
                double size, double given) {
-    take(kernels::farthest_from_quadratic(points.first(rows.bezier_count()), rows.quadratic(0), q),
+    take(kernels::farthest_from_quadratic(points.first(rows.bezier_count()), rows.quadratic(0), q, normal_),
          error + given + gamma_bound(32) * size);
   }
 
@@ -298,27 +314,29 @@ class Comparison {
     }
   }
 
-  // Splits nets while they add notably. The largest distance.
-  [[nodiscard]] double resolve() {
-    double rest = 0;
+  // Splits nets while they add notably to the largest distance, whatever its direction.
+  [[nodiscard]] Apart resolve() {
+    Apart rest;
     for (std::size_t next = 0; next < opened_; ++next) {
       Open& open = *open_[next];
       const Kind& kind = *open.piece.kind;
       const unsigned limit = kind.cacheable()   ? max_levels
                              : kind.transient() ? transient_split_levels
                                                 : high_valence_split_levels;
-      if (open.distance <= (1 + notable_excess) * farthest_ || open.level >= limit) {
-        rest = std::max(rest, open.distance);
+      if (open.distance.any <= (1 + notable_excess) * farthest_.any || open.level >= limit) {
+        rest.add(open.distance);
       } else {
         add(open.piece, open.quadratic, open.given, open.level);
       }
     }
-    return std::max(rest, farthest_);
+    rest.add(farthest_);
+    return rest;
   }
   struct Open {
     Patch piece;  // in its kind's order
     Quadratic quadratic;
-    double given = 0, distance = 0;
+    double given = 0;
+    Apart distance;
     unsigned level = 0;
   };
   Open& next_open() {
@@ -329,32 +347,43 @@ class Comparison {
     const Kind& kind = *open.piece.kind;
     open.given = given;
     open.level = level;
-    open.distance = kind.cacheable()
-                        ? library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic)
-                        : INFINITY;
-    if (open.distance == INFINITY) open.distance = by_hulls(open.piece, open.quadratic);
-    open.distance = enlarged(open.distance + spatial_error(given) + tiny);
+    Apart apart{INFINITY, INFINITY};
+    if (kind.cacheable()) {
+      apart = library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic, normal_);
+    }
+    if (apart.any == INFINITY) apart = by_hulls(open.piece, open.quadratic, normal_);
+    open.distance = widened(apart, given);
   }
-  void take(double distance, double error) {
-    const double most = enlarged(distance + spatial_error(error) + tiny);
-    farthest_ = std::isfinite(most) ? std::max(farthest_, most) : INFINITY;
+  // By an error of the difference, a coordinate, and what a product with the normal rounds.
+  [[nodiscard]] static Apart widened(const Apart& apart, double error) {
+    const double off = spatial_error(error) + tiny;
+    return {enlarged(apart.any + off), enlarged(apart.along + off + 16 * unit_roundoff * apart.any)};
+  }
+  void take(const Apart& apart, double error) {
+    const Apart most = widened(apart, error);
+    const bool finite = std::isfinite(most.any) && std::isfinite(most.along);
+    farthest_.add(finite ? most : Apart{INFINITY, INFINITY});
   }
   // Points of degree 1, raised.
   void add_plane(const Patch& piece, const Quadratic& q, double given) {
     const Stencils& rows = piece.kind->bezier();
     std::array<Vector3, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) corner[k] = rows.apply<Vector3>(k, piece.points);
-    double sq = 0;
+    double sq = 0, along = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      sq = std::max(
-          {sq, length_sq(corner[k] - q[k]), length_sq(0.5 * (corner[k] + corner[(k + 1) % 3]) - q[3 + k])});
+      for (const Vector3& off : {corner[k] - q[k], 0.5 * (corner[k] + corner[(k + 1) % 3]) - q[3 + k]}) {
+        sq = std::max(sq, length_sq(off));
+        along = std::max(along, std::fabs(dot(normal_, off)));
+      }
     }
-    take(std::sqrt(sq), rows.result_error(piece.largest, piece.error) + given +
-                            8 * unit_roundoff * (piece.largest + largest_of(q)));
+    take({std::sqrt(sq), along}, rows.result_error(piece.largest, piece.error) + given +
+                                     8 * unit_roundoff * (piece.largest + largest_of(q)));
   }
   void add_parts(const Patch& piece, const Quadratic& q, double given, unsigned level) {
     for (unsigned child = 0; child < 4; ++child) {
-      Open part{split(piece, child), restricted(q, restriction_to(child_of(whole_patch, child)))};
+      Open part;
+      part.piece = split(piece, child);
+      part.quadratic = restricted(q, restriction_to(child_of(whole_patch, child)));
       part.quadratic = turned(part.quadratic, part.piece.first);
       part.piece.first = 0;
       part.piece.path = {};
@@ -372,7 +401,8 @@ class Comparison {
   BoundingPoints points_;
   std::vector<std::unique_ptr<Open>> open_;  // as many as there ever were
   std::size_t opened_ = 0;
-  double farthest_ = 0;
+  Vector3 normal_;
+  Apart farthest_;
 };
 
 // Through the limits of corners and of the middles of edges.
@@ -396,20 +426,22 @@ Quadratic fitted(const QuadraticRows& rows, const Patch& patch) {
 // About the patch's origin, in the kind's order.
 struct Fit {
   Quadratic quadratic;
-  double error;
+  Vector3 normal;
+  Apart apart;
 };
 
-double distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q, const BoundingPoints& hull) {
+Apart distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q, const Vector3& normal,
+                  const BoundingPoints& hull) {
   thread_local Comparison comparison;
   thread_local Patch whole;
   whole = patch;
   whole.first = 0;
   whole.path = {};
-  return comparison.distance(library, whole, q, hull);
+  return comparison.distance(library, whole, q, normal, hull);
 }
 
 Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull) {
-  Fit fit{{}, 0};
+  Fit fit;
   const Kind& kind = *patch.kind;
   if (!kind.cacheable()) {
     Patch whole = patch;
@@ -424,14 +456,16 @@ Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull)
   } else {
     fit.quadratic = fitted(library.quadratic_rows(kind), patch);
   }
-  fit.error = distance_to(library, patch, fit.quadratic, hull);
+  const Quadratic& q = fit.quadratic;
+  fit.normal = normalized(cross(q[1] - q[0], q[2] - q[0]));
+  fit.apart = distance_to(library, patch, q, fit.normal, hull);
   return fit;
 }
 
 }  // namespace
 
 QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const BoundingPoints& hull) {
-  const auto [quadratic, distance] = fit_of(library, patch, hull);
+  const auto [quadratic, normal, apart] = fit_of(library, patch, hull);
   QuadraticTriangle result;
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -443,8 +477,15 @@ QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, c
   }
   const bool finite =
       std::all_of(patch.points.begin(), patch.points.end(), [](const Vector3& p) { return is_finite(p); }) &&
-      largest < INFINITY && distance < INFINITY;
-  result.error = finite ? enlarged(distance + spatial_error(2 * unit_roundoff * largest)) : double{INFINITY};
+      largest < INFINITY && apart.any < INFINITY;
+  if (!finite) {
+    result.error = INFINITY;
+    return result;
+  }
+  const double moved = spatial_error(2 * unit_roundoff * largest);
+  result.error = enlarged(apart.any + moved);
+  result.normal = normal;
+  result.normal_error = enlarged(apart.along + moved);
   return result;
 }
 
@@ -464,7 +505,7 @@ double distance_to_triangle(BoundsCache& library, const Patch& patch, const Boun
       std::all_of(patch.points.begin(), patch.points.end(), [](const Vector3& p) { return is_finite(p); }) &&
       largest < INFINITY;
   if (!finite) return INFINITY;
-  const double distance = distance_to(library, patch, flat, hull);
+  const double distance = distance_to(library, patch, flat, {}, hull).any;
   return enlarged(distance + spatial_error(2 * unit_roundoff * largest));
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include <snug/bounds/bounding_rows.h>
+#include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/layout.h>
 #include <snug/patch/patch.h>
 
@@ -18,6 +21,8 @@ struct QuadraticTriangle {
   std::array<Point3, 3> corners;  ///< near the patch's limit corners, in the patch's order
   std::array<Point3, 3> middles;  ///< Bezier points of the edges from corner 0 to 1, 1 to 2, 2 to 0
   double error;                   ///< |patch(t) - quadratic(t)| <= error for all t; infinite if not finite
+  Vector3 normal{};  ///< of about length 1 across the corners, or zero; the patch usually errs less along it:
+  double normal_error = 0;  ///< |dot(normal, patch(t) - quadratic(t))| <= normal_error for all t
 };
 
 /// Rows that make and bound the quadratic triangles of a kind. Immutable.
@@ -42,10 +47,10 @@ class QuadraticRows {
   [[nodiscard]] const std::vector<double>& largest() const { return largest_; }
   [[nodiscard]] std::size_t bytes() const;
 
-  /// Upper bound of |patch(t) - quadratic(t)| for one in the kind's order; infinite unless the kind comes
+  /// How far a patch and a quadratic in the kind's order are apart, and along `normal`; infinite unless the kind comes
   /// again at a corner.
-  [[nodiscard]] double distance(const Kind& kind, const Patch& patch,
-                                const std::array<Vector3, 6>& quadratic) const;
+  [[nodiscard]] Apart distance(const Kind& kind, const Patch& patch, const std::array<Vector3, 6>& quadratic,
+                               const Vector3& normal) const;
 
  private:
   friend QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
@@ -68,7 +73,7 @@ class QuadraticRows {
 
 /// The quadratic triangle of a patch, least squares over Bezier points, with its error.
 ///
-/// Guarantee: QuadraticTriangle::error, rounding and the patch's own error included.
+/// Guarantee: both errors, rounding and the patch's own error included.
 /// Requires:  hull: of bounding_points() for this patch, no tip of it refined.
 /// Tightness: in the median 1.3 times the largest distance over all parameters.
 /// Cost:      given the hull about 0.1 microseconds; with extraordinary corners 0.3 each, and one product a

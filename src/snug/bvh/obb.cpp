@@ -235,6 +235,19 @@ Axes axes_around(std::span<const Obb> boxes) {
 
 Obb merge(std::span<const Obb> boxes) { return merge(boxes, turned_to_fit(axes_around(boxes), boxes)); }
 
+// |w . d| <= |part| normal_error + |w - part n| error for any part: that which makes the sum least, as far as doubles know it.
+double error_along(const Vector3& w, const Vector3& n, double error, double normal_error) {
+  if (!(error < INFINITY)) return INFINITY;
+  const double cosine = dot(w, n), across_sq = error * error - normal_error * normal_error;
+  double part = 0;
+  if (across_sq > 0) {
+    const double sine = std::sqrt(std::max(0.0, length_sq(w) - cosine * cosine));
+    part = std::max(0.0, std::fabs(cosine) - sine * normal_error / std::sqrt(across_sq));
+  }
+  const Vector3 rest = w - std::copysign(part, cosine) * n;
+  return (part * normal_error + length(rest) * error) * (1 + 0x1p-45) + 0x1p-47 * error;
+}
+
 Extent extent_of(const FittedSet& set, const Vector3& direction) {
   const Extent of_box = extent_of(std::span(&set.box, 1), direction);
   if (!(set.error < INFINITY) || !(of_box.upper < INFINITY)) return of_box;
@@ -257,8 +270,9 @@ Extent extent_of(const FittedSet& set, const Vector3& direction) {
                 std::max(centre, (std::max(h[k], h[next]) + h[3 + k]) / 2)});
   }
   const double middle = dot(direction, from - Point3{});
-  const double reach =
-      enlarged(set.error + 64 * unit_roundoff * (largest + max_abs(from - Point3{}))) + 16 * underflow_error;
+  const double reach = enlarged(error_along(direction, set.normal, set.error, set.normal_error) +
+                                64 * unit_roundoff * (largest + max_abs(from - Point3{}))) +
+                       16 * underflow_error;
   return {std::max(of_box.lower, middle + of_net.lower - reach),
           std::min(of_box.upper, middle + of_net.upper + reach)};
 }

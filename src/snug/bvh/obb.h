@@ -58,11 +58,19 @@ template <class Extents>
 /// The same along given axes.
 [[nodiscard]] Obb merge(std::span<const Obb> boxes, const Axes& axes);
 
-/// A set that boxes are fitted to: in a box, and within `error` of a quadratic Bezier triangle.
+/// Upper bound of |dot(w, d)| for differences d with |d| <= error and |dot(n, d)| <= normal_error.
+/// Guarantee: whatever n is, rounding included. Tightness: the least where n has length 1.
+/// Requires:  |w|, |n| at most about 1; normal_error finite.
+/// Source:    derivations/quadratics.md, "Errors with a direction".
+[[nodiscard]] double error_along(const Vector3& w, const Vector3& n, double error, double normal_error);
+
+/// A set that boxes are fitted to: in a box, and off a quadratic Bezier triangle by differences as in error_along().
 struct FittedSet {
   Obb box;
   std::array<Point3, 6> net{};  ///< corners, then middles of the edges 01, 12, 20
   double error = INFINITY;      ///< infinite: nothing but the box is known
+  Vector3 normal{};
+  double normal_error = 0;
 };
 /// Bounds of dot(direction, x) over such a set, rounding included.
 /// Requires:  |direction| 1 up to a few roundings.

@@ -66,25 +66,22 @@ class ClosestSearch {
     // The nearest of all first takes longer for each, and has fewer pieces to split.
     open_.start(coarse_ ? Order::last_first : Order::nearest_first, {cache_.root(), 0});
     search(open_, *this);
-    open_.for_each([&](const NodeGap& at) { bounds_.prune(static_cast<double>(at.gap)); });
+    for (const NodeGap& at : open_.items()) bounds_.prune(static_cast<double>(at.gap));
     return result();
   }
 
   Verb look_at(const NodeGap& at) {
     gap_ = static_cast<double>(at.gap);
-    const bool bounded = at.node.bounded();
-    const bool last = bounded && !PieceCache::can_open(at.node);
-    if (bounded && gap_ < bounds_.prune_distance()) {
+    if (gap_ >= bounds_.prune_distance()) return pruned();
+    if (at.node.bounded()) {
       monitor_.checkpoint();
       gap_ = std::max(gap_, gap_of(at.node, PieceCache::bounds_of(at.node)));
-      // Single precision is what is left of it.
-      if (last && gap_ < bounds_.prune_distance()) {
-        gap_ = std::max(gap_, look_at(at.node, cache_.piece(at.node).offset));
+      if (gap_ >= bounds_.prune_distance()) return pruned();
+      if (!PieceCache::can_open(at.node)) {
+        // Single precision is what is left of it.
+        gap_ = std::max(gap_, gap_of_triangle(at.node, cache_.piece(at.node).offset));
+        return pruned();
       }
-    }
-    if (last || gap_ >= bounds_.prune_distance()) {
-      bounds_.prune(gap_);
-      return Verb::drop;
     }
     if (splits_ < max_splits_ && !cache_.full()) return Verb::open;
     budget_spent_ = splits_ >= max_splits_;
@@ -110,6 +107,11 @@ class ClosestSearch {
   }
 
  private:
+  Verb pruned() {
+    bounds_.prune(gap_);
+    return Verb::drop;
+  }
+
   // A lower bound of the distance of a piece: by its quadratic in single precision, which improves the upper one, too, unless
   // roundings are a notable part of the precision, as they are for points far away.
   double gap_of(const Node& node, const PieceBounds& record) {
@@ -125,11 +127,11 @@ class ClosestSearch {
         return lower - doubt;
       }
     }
-    return look_at(node, {record.base(node.boxes->origin()), record.radius()});
+    return gap_of_triangle(node, {record.base(node.boxes->origin()), record.radius()});
   }
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
-  double look_at(const Node& node, const OffsetTriangle& offset) {
+  double gap_of_triangle(const Node& node, const OffsetTriangle& offset) {
     const NearestTriangles near = nearest({to_, to_, to_}, offset.base);
     double gap = snug::gap_of(near, offset.radius, spatial_error(point_error_));
     if (near.certain_distance < bounds_.upper()) {
@@ -157,7 +159,7 @@ class ClosestSearch {
     if (w == Vector3{}) return 0;
     const PieceBounds& record = PieceCache::bounds_of(node);
     const Vector3 from = node.boxes->origin() - to_;
-    const double taken = record.extent(-w) + enlarged(record.error()) - dot(w, from);
+    const double taken = record.extent(-w) + enlarged(record.error_along(w)) - dot(w, from);
     return gap_of_planes(taken) - 16 * unit_roundoff * max_abs(from) - spatial_error(point_error_) -
            16 * underflow_error;
   }

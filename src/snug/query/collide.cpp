@@ -7,7 +7,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/query/nesting.h>
 #include <snug/query/pair_queries.h>
-
 #include <snug/search/crossing.h>
 #include <snug/search/near_pairs.h>
 #include <snug/search/pair_frames.h>
@@ -81,7 +80,7 @@ class CollideSearch {
     return waiting_count_ == waiting_.size() ? open_nearest_waiting() : Verb::drop;
   }
   void open(const NodePair& pair) {
-    lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, margin_, open_.items())));
+    lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, margin_, open_)));
   }
 
  private:

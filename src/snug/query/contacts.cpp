@@ -90,11 +90,7 @@ class ContactsSearch {
     answer_.outcome = Outcome::budget_spent;
     return Verb::stop;
   }
-  void open(const NodePair& pair) {
-    opened_.clear();
-    static_cast<void>(walk_.open(pair, tolerance_, opened_));
-    for (const NodePair& child : opened_) open_.add(child);
-  }
+  void open(const NodePair& pair) { static_cast<void>(walk_.open(pair, tolerance_, open_)); }
 
  private:
   // ---- Pairs of pieces ----
@@ -337,7 +333,6 @@ class ContactsSearch {
   PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
   PiecePairs pieces_{frames_, stats_};
   Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
-  std::vector<NodePair> opened_;
   const ContactsOptions& options_;
   Run run_;
   const WorkMonitor& monitor_;

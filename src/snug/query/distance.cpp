@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <span>
 
 #include <snug/certificate/certify.h>
 #include <snug/query/nesting.h>
@@ -44,7 +44,7 @@ class DistanceSearch {
     open_.start(Order::last_first, walk_.roots());
     search(open_, *this);
     // Pairs not visited, since the bounds are near enough or the budget has ended.
-    open_.for_each([&](const NodePair& pair) { bounds_.prune(gap_of(pair)); });
+    for (const NodePair& pair : open_.items()) bounds_.prune(gap_of(pair));
     return result();
   }
 
@@ -68,10 +68,10 @@ class DistanceSearch {
     return stop(gap_of(pair));
   }
   void open(const NodePair& pair) {
-    std::vector<NodePair>& all = open_.items();
-    const std::size_t first = all.size();
-    bounds_.prune(static_cast<double>(walk_.open(pair, bounds_.prune_distance(), all)));
-    ordering::sort(all.data() + first, all.size() - first, farther_pair);
+    const std::size_t before = open_.size();
+    bounds_.prune(static_cast<double>(walk_.open(pair, bounds_.prune_distance(), open_)));
+    const std::span<NodePair> opened = open_.items().subspan(before);
+    ordering::sort(opened.data(), opened.size(), farther_pair);
   }
 
  private:
@@ -87,18 +87,17 @@ class DistanceSearch {
   void dive() {
     std::array<NodePair, beam> front{walk_.roots()};
     std::size_t count = 1;
-    open_.start(Order::last_first);
-    std::vector<NodePair>& next = open_.items();
     const auto whole = [](const NodePair& pair) { return pair.bounded(); };
-    while (!std::all_of(front.begin(), front.begin() + count, whole)) {
-      next.clear();
-      for (std::size_t i = 0; i < count; ++i) {
-        if (whole(front[i])) {
-          next.push_back(front[i]);
+    while (!std::all_of(front.data(), front.data() + count, whole)) {
+      open_.start(Order::last_first);
+      for (const NodePair& pair : std::span(front).first(count)) {
+        if (whole(pair)) {
+          open_.add(pair);
         } else {
-          static_cast<void>(walk_.open(front[i], INFINITY, next));
+          static_cast<void>(walk_.open(pair, INFINITY, open_));
         }
       }
+      const std::span<NodePair> next = open_.items();
       count = std::min(beam, next.size());
       ordering::partial_sort(next.data(), count, next.size(), nearer);
       std::copy_n(next.begin(), count, front.begin());

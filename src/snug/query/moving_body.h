@@ -46,7 +46,7 @@ class Deformation {
   std::optional<PieceCache> moved_scratch_;
 };
 
-/// A model that moves, with a workspace as in PlacedBvh.
+/// A model that moves, with a cache as in PlacedBvh.
 struct MovingBvh {
   const SurfaceBvh& model;  ///< at time 0
   PieceCache& scratch;

@@ -7,7 +7,7 @@
 #include <snug/search/workspace.h>
 #include <support/run.h>
 
-/// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
+/// The questions of collide.h and distance.h about surfaces whose trees and caches are at hand.
 namespace snug {
 
 /// Both trees are opened from their roots on, deepest overlap first. A pair of patches or pieces is (a)

@@ -374,7 +374,7 @@ SelfContact self_contact(const Surface& surface, const SelfContactOptions& optio
         "self contact: the radius is less than twice 'within', where even flat places are near each other "
         "beyond it; give a longer one");
   }
-  return SelfSearch(surface.data()->bvh(), options, run).run();
+  return SelfSearch(surface.data()->bvh(stop_only(run)), options, run).run();
 }
 
 }  // namespace snug

@@ -78,7 +78,7 @@ class LevelPieces {
   };
 
   LevelPieces(const SurfaceBvh& model, const LevelComplex& complex, unsigned level)
-      : complex_(&complex), level_(level), pieces_(model) {}
+      : complex_(&complex), level_(level), pieces_(pieces_of_self(model)) {}
 
   [[nodiscard]] const Piece& piece(const PieceName& name) { return pieces_.piece(name); }
   [[nodiscard]] Node& node(const PieceName& name) {
@@ -437,7 +437,7 @@ class NearSearch {
 
   void leave(const std::vector<NearPair>& live) {
     constexpr std::size_t enough = 100;
-    PieceCache pieces(model_);
+    PieceCache pieces = pieces_of_self(model_);
     for (const NearPair& pair : live) {
       if (answer_.unresolved.size() == enough) break;
       pieces.begin(max_bytes_of_self);

@@ -8,8 +8,8 @@
 #include <support/error.h>
 
 namespace snug {
+
 std::vector<StarSector> sectors_of(PieceCache& pieces, const LevelStar& star) {
-  for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
   std::vector<StarSector> sectors;
   for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
   return sectors;

@@ -13,15 +13,16 @@
 
 namespace snug {
 
-/// What a thread keeps of the pieces of a surface that is compared with itself.
+/// What a thread keeps of the pieces of a surface that is compared with itself, which are bounded by rows.
 inline constexpr std::size_t max_bytes_of_self = std::size_t{64} << 20;
+[[nodiscard]] inline PieceCache pieces_of_self(const SurfaceBvh& model) { return PieceCache(model, 0, true); }
 
 /// Calls body(pieces, i) for each i < count on the threads, each of which drops its pieces in time.
 template <class Body>
 void for_each_with_pieces(const SurfaceBvh& model, std::size_t count, int threads, const WorkMonitor& monitor,
                           const Body& body) {
   parallel_for_with(
-      count, threads, [&] { return PieceCache(model); },
+      count, threads, [&] { return pieces_of_self(model); },
       [&](PieceCache& pieces, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           monitor.checkpoint();

@@ -185,7 +185,8 @@ std::array<Point3, 6> points_of(const QuadraticTriangle& q) {
 Extent extent_of(const QuadraticTriangle& q, const Vector3& direction) {
   Extent extent;
   for (const Point3& p : points_of(q)) extent.add(dot(direction, p - Point3{}));
-  const double reach = enlarged(q.error * length(direction)) + distance_rounding;
+  const double reach =
+      enlarged(error_along(direction, q.normal, q.error, q.normal_error)) + distance_rounding;
   return {extent.lower - reach, extent.upper + reach};
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include <support/contract.h>
 #include <support/ordering.h>
 
 namespace snug {
@@ -20,61 +23,56 @@ template <class Item>
 class Frontier {
  public:
   /// Begins anew, with the memory of the last time.
+  /// Requires:  items with a gap for nearest_first.
+  void start(Order order) {
+    SNUG_EXPECT(has_gap || order != Order::nearest_first);
+    order_ = order;
+    first_ = end_ = 0;
+  }
   void start(Order order, const Item& root) {
     start(order);
-    items_.push_back(root);
+    add(root);
   }
-  void start(Order order) {
-    order_ = order;
-    items_.clear();
-    taken_ = 0;
-  }
-  [[nodiscard]] bool empty() const { return taken_ == items_.size(); }
-  [[nodiscard]] std::size_t size() const { return items_.size() - taken_; }
-  /// Of the nearest, in its order.
-  /// Requires:  not empty; so does take().
-  [[nodiscard]] const Item& nearest() const { return items_.front(); }
+  [[nodiscard]] bool empty() const { return first_ == end_; }
+  [[nodiscard]] std::size_t size() const { return end_ - first_; }
+  /// Requires:  not empty.
   Item take() {
-    if (order_ == Order::first_first) return take_first();
+    if (order_ == Order::first_first) return items_[first_++];
     if constexpr (has_gap) {
-      if (order_ == Order::nearest_first) ordering::pop_heap(items_.data(), items_.size(), farther);
+      if (order_ == Order::nearest_first) ordering::pop_heap(items_.data(), end_, farther);
     }
-    const Item item = items_.back();
-    items_.pop_back();
-    return item;
+    return items_[--end_];
   }
-  void add(const Item& item) {
-    items_.push_back(item);
-    if constexpr (has_gap) {
-      if (order_ == Order::nearest_first) ordering::push_heap(items_.data(), items_.size(), farther);
-    }
+  [[gnu::always_inline]] void add(Item item) {
+    if (end_ == items_.size()) make_room();
+    items_[end_++] = item;
+    if (order_ == Order::nearest_first) raise_last();
   }
-  /// All that is open, the one to be taken next the last; more may be added there.
-  /// Requires:  last_first.
-  [[nodiscard]] std::vector<Item>& items() { return items_; }
-  /// Calls visit(item) for all that is open.
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (std::size_t i = taken_; i < items_.size(); ++i) visit(items_[i]);
-  }
+  /// All that is open, in the order in which it was added but for nearest_first. With last_first it may be sorted.
+  [[nodiscard]] std::span<Item> items() { return std::span(items_).subspan(first_, size()); }
   [[nodiscard]] std::size_t bytes() const { return items_.capacity() * sizeof(Item); }
 
  private:
   static constexpr bool has_gap = requires(const Item& item) { item.gap; };
   static bool farther(const Item& x, const Item& y) { return x.gap > y.gap; }
-  Item take_first() {
-    const Item item = items_[taken_++];
-    // Memory stays within twice of what is open.
-    if (2 * taken_ > items_.size()) {
-      items_.erase(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(taken_));
-      taken_ = 0;
+  // Apart from add(), which hot loops call.
+  [[gnu::noinline]] void raise_last() {
+    if constexpr (has_gap) ordering::push_heap(items_.data(), end_, farther);
+  }
+  [[gnu::noinline]] void make_room() {
+    // What was taken first_first makes room if it is half of all.
+    if (first_ > 0 && 2 * first_ >= end_) {
+      std::copy(items_.begin() + static_cast<std::ptrdiff_t>(first_), items_.end(), items_.begin());
+      end_ -= first_;
+      first_ = 0;
+    } else {
+      items_.resize(2 * items_.size() + 16);
     }
-    return item;
   }
 
   Order order_ = Order::last_first;
-  std::vector<Item> items_;
-  std::size_t taken_ = 0;  // of the first ones
+  std::vector<Item> items_;  // from first_ to before end_
+  std::size_t first_ = 0, end_ = 0;
 };
 
 /// What becomes of an item that a question has looked at.
@@ -84,8 +82,8 @@ enum class Verb : std::uint8_t {
   stop,  ///< the question is answered, or its budget spent
 };
 
-/// Every search of this library: looks at what is open until nothing is, or the question stops.
-/// Requires:  Verb question.look_at(item); void question.open(item), which adds to the frontier. Both may look at what is open.
+/// The loop of a search: looks at what is open until nothing is, or the question stops.
+/// Requires:  Verb question.look_at(item) and void question.open(item). Either may add to the frontier.
 template <class Item, class Question>
 void search(Frontier<Item>& frontier, Question& question) {
   while (!frontier.empty()) {

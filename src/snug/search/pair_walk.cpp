@@ -6,6 +6,12 @@
 #include <utility>
 
 namespace snug {
+namespace {
+
+// How much larger than a node of a tree a piece is that is split first.
+constexpr float much_larger = 4;
+
+}  // namespace
 
 PairWalk::PairWalk(PairFrames& frames, SearchStats& stats, WideNode::Gaps gaps)
     : frames_(frames),
@@ -18,7 +24,13 @@ NodePair PairWalk::roots() const { return {{frames_.cache(0).root(), frames_.cac
 std::size_t PairWalk::side_to_open(const NodePair& pair) const {
   const auto& [a, b] = pair.nodes;
   const bool can_a = PieceCache::can_open(a), can_b = PieceCache::can_open(b);
-  if (can_a && can_b) return size(pair, 1) > size(pair, 0) ? 1 : 0;
+  if (can_a && can_b) {
+    const auto weight = [&](std::size_t side) {
+      const bool splits = pair.nodes[side].bounded() && !pair.nodes[1 - side].bounded();
+      return splits ? size(pair, side) / much_larger : size(pair, side);
+    };
+    return weight(1) > weight(0) ? 1 : 0;
+  }
   return can_a ? 0 : can_b ? 1 : neither;
 }
 
@@ -30,7 +42,7 @@ PairWalk::May PairWalk::may(const NodePair& pair, std::uint64_t budget) const {
   return splits && spent ? May::end : May::open;
 }
 
-float PairWalk::open(const NodePair& pair, double prune_distance, std::vector<NodePair>& out) {
+float PairWalk::open(const NodePair& pair, double prune_distance, Frontier<NodePair>& out) {
   const std::size_t side = side_to_open(pair);
   const Node &node = pair.nodes[side], other = pair.nodes[1 - side];
   stats_.splits += node.bounded();
@@ -53,9 +65,8 @@ float PairWalk::open(const NodePair& pair, double prune_distance, std::vector<No
     gaps.fill(-INFINITY);
   }
   const auto add = [&](std::size_t place) {
-    out.push_back(
-        {side == 0 ? std::array{opened.child(place), other} : std::array{other, opened.child(place)},
-         gap_of(gaps[place])});
+    out.add({side == 0 ? std::array{opened.child(place), other} : std::array{other, opened.child(place)},
+             gap_of(gaps[place])});
   };
   if (near.places != 0) {
     auto nearest = static_cast<std::size_t>(std::countr_zero(near.places));

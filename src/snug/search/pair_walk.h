@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include <snug/collide.h>
 #include <snug/search/pair_frames.h>
@@ -28,11 +27,11 @@ class PairWalk {
     end,       ///< the budget is spent, or the query's memory full
   };
   [[nodiscard]] May may(const NodePair& pair, std::uint64_t budget) const;
-  /// Opens the larger node of a pair, of a tree or of pieces, so that no large piece is compared with many small ones: child pairs with
-  /// a gap of at most `prune_distance` are added to `out`, the one with the smallest gap last. Returns the smallest gap of the others;
-  /// infinite if there are none.
+  /// Opens the larger node, so that no large one is compared with many small ones. Of a tree and a piece it opens the tree, which costs
+  /// no split, unless the piece is more than four times as large. Child pairs with a gap of at most `prune_distance` are added to `out`,
+  /// the one with the smallest gap last. Returns the smallest gap of the others; infinite if there are none.
   /// Requires:  a node that can be opened.
-  float open(const NodePair& pair, double prune_distance, std::vector<NodePair>& out);
+  float open(const NodePair& pair, double prune_distance, Frontier<NodePair>& out);
 
  private:
   static constexpr std::size_t neither = 2;

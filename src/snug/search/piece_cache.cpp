@@ -56,6 +56,8 @@ void PieceCache::begin(std::size_t max_bytes) {
     roots_ = {};
     splits_.clear();
     entries_.clear();
+    open_nodes_ = {};
+    open_pairs_ = {};
     split_count_ = entry_count_ = 0;
     bytes_of_points_ = 0;
     query_ = 1;
@@ -116,7 +118,8 @@ PieceName PieceCache::name(const Node& node) {
 const Piece& PieceCache::bounded(std::uint32_t i) {
   Entry& entry = entries_[i];
   if (!entry.bounded) {
-    entry.piece.offset = offset_of(model_->surface().library(), entry.piece.patch, points_, model_->method());
+    const BoundMethod method = always_rows_ ? BoundMethod::rows : model_->method();
+    entry.piece.offset = offset_of(model_->surface().library(), entry.piece.patch, points_, method);
     entry.bounded = true;
   }
   return entry.piece;

@@ -73,9 +73,10 @@ class KnownExtents {
 ///            queries.
 class PieceCache {
  public:
-  /// A query splits at most this many different nodes, which bounds its memory.
-  explicit PieceCache(const SurfaceBvh& model, std::size_t max_pieces = 50'000)
-      : model_(&model), max_pieces_(max_pieces) {}
+  /// A query splits at most this many different nodes, which bounds its memory. Offset triangles are by the model's method, or by
+  /// rows.
+  explicit PieceCache(const SurfaceBvh& model, std::size_t max_pieces = 50'000, bool always_rows = false)
+      : model_(&model), max_pieces_(max_pieces), always_rows_(always_rows) {}
 
   [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -175,6 +176,7 @@ class PieceCache {
 
   const SurfaceBvh* model_;
   std::size_t max_pieces_;
+  bool always_rows_;
   BoundingPoints points_;
   KnownExtents extents_;
   Frontier<NodeGap> open_nodes_;

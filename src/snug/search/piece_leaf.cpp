@@ -49,7 +49,13 @@ PieceBounds::PieceBounds(const OffsetTriangle& offset, const QuadraticTriangle& 
   flattening_ = float_up(enlarged(bend / 48));
   spread_ = float_up(enlarged(2 * spread));
   radius_ = float_up(enlarged(offset.radius + spatial_error(base_moved + rounding)));
-  error_ = float_up(enlarged(quadratic.error + spatial_error(moved + rounding)));
+  const double net_moved = spatial_error(moved + rounding);
+  error_ = float_up(enlarged(quadratic.error + net_moved));
+  if (quadratic.normal_error < quadratic.error) {
+    normal_ = single(quadratic.normal);
+    const double turned = length(wide(normal_) - quadratic.normal) * quadratic.error;
+    normal_error_ = float_up(enlarged(quadratic.normal_error + turned + (1 + 0x1p-20) * net_moved));
+  }
   // Not a number is not less.
   if (finite && radius_ < INFINITY && error_ < INFINITY) return;
   *this = {};
@@ -101,8 +107,8 @@ double PieceBounds::extent(const Vector3& w) const {
 }
 
 FittedSet fitted_set(const PieceBuild& piece) {
-  const auto& [c, m, error] = piece.quadratic;
-  return {piece.box, {c[0], c[1], c[2], m[0], m[1], m[2]}, error};
+  const auto& [c, m, error, normal, normal_error] = piece.quadratic;
+  return {piece.box, {c[0], c[1], c[2], m[0], m[1], m[2]}, error, normal, normal_error};
 }
 
 PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method) {

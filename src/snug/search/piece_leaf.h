@@ -32,9 +32,14 @@ class PieceBounds {
   [[nodiscard]] std::array<Vector3, 2> derivatives(TriangleParameter at) const;
   /// Its Bezier points, relative to the origin: corners, then middles of the edges 01, 12, 20.
   [[nodiscard]] Vector3 bezier_point(std::size_t k) const { return wide(net_[k]); }
-  /// Upper bound of dot(w, x) over the piece, x relative to the origin, but for |w| error().
+  /// Upper bound of dot(w, x) over the quadratic, x relative to the origin, up to roundings that both errors cover.
   [[nodiscard]] double extent(const Vector3& w) const;
   [[nodiscard]] double error() const { return static_cast<double>(error_); }
+  /// Upper bound of |dot(w, x - q)| for a point x of the piece and the quadratic's point q at its parameter.
+  /// Requires:  |w| at most about 1.
+  [[nodiscard]] double error_along(const Vector3& w) const {
+    return snug::error_along(w, wide(normal_), error(), static_cast<double>(normal_error_));
+  }
 
   /// Bounds of the distance of a point, relative to the origin, from the quadratic. At the parameter it is no more than the
   /// upper one. They are apart by twice `rounding`, 2^-18 of the point's coordinates, of twice the distance and of sixteen
@@ -58,6 +63,8 @@ class PieceBounds {
   std::array<Single3, 3> base_{};
   std::array<Single3, 6> net_{};  // of the quadratic: corners, then middles of the edges 01, 12, 20
   float radius_ = 0, error_ = 0;
+  Single3 normal_{};  // across the quadratic, or zero
+  float normal_error_ = 0;
   // Upper bounds of |quadratic - triangles| and, twice, of |x|_1 for differences of Bezier points from the first.
   float flattening_ = 0, spread_ = 0;
 };

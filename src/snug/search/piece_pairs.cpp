@@ -138,9 +138,12 @@ double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vecto
   const PieceBounds& record = PieceCache::bounds_of(node);
   const Point3 origin = frame.apply(node.boxes->origin());
   // w . (scale R x) = scale (R' w) . x
-  const double own = frame.scale * record.extent(transposed_times(frame.rows, w));
+  const Vector3 there = transposed_times(frame.rows, w);
+  const double own = frame.scale * record.extent(there);
   const double placed = dot(w, origin - Point3{});
-  const double error = enlarged(frame.growth() * record.error()) + 4 * frame.largest_apply_error() +
+  // `there` is R' w itself, so what the rows lack of rigidity is in its length; its roundings are the second term.
+  const double error = enlarged(frame.scale * (record.error_along(there) + 0x1p-47 * record.error())) +
+                       4 * frame.largest_apply_error() +
                        40 * unit_roundoff * (std::fabs(own) + max_abs(origin - Point3{})) +
                        8 * underflow_error;
   return placed + own + error;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include <snug/bvh/obb.h>
 #include <snug/geometry/rounding.h>
@@ -70,6 +71,8 @@ QuadraticTriangle in_units(const QuadraticTriangle& q, PowerOfTwo units) {
     result.middles[k] = units.apply(q.middles[k]);
   }
   result.error = units.apply(q.error) + 8 * underflow_error;
+  result.normal = q.normal;
+  result.normal_error = units.apply(q.normal_error) + 8 * underflow_error;
   return result;
 }
 
@@ -142,6 +145,11 @@ PieceSet::PieceSet(const LimitSurface& surface, double error, int threads, const
 std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which, double error, int threads,
                                             const WorkMonitor& monitor, std::uint64_t most) {
   if (surface_ == nullptr) return {};
+  if (std::find(which.begin(), which.end(), std::uint8_t{1}) == which.end()) {
+    std::vector<std::uint32_t> same(size());
+    std::iota(same.begin(), same.end(), 0u);
+    return same;
+  }
   const double own_error = units_.inverse().apply(error);
   Made made = made_in_order(size(), most, threads, monitor, [&](std::size_t i, Count& count, Made& parts) {
     const PieceName& name = names_[i];

@@ -13,6 +13,7 @@
 #include <snug/evaluate.h>
 #include <snug/run.h>
 #include <snug/surface/piece_name.h>
+#include <support/contract.h>
 
 namespace snug {
 
@@ -27,8 +28,8 @@ class PieceSet {
   /// Requires:  coordinates at most about 2; finite errors.
   explicit PieceSet(std::vector<QuadraticTriangle> given) : quadratics_(std::move(given)) {}
   /// Pieces that together are a surface, each split until its error is at most `error`. Where rounding or the last level ends that,
-  /// the error is larger. None if these would be more than `most`; memory stays below what so many take. In units of which the
-  /// surface's scaled one is `units` many.
+  /// the error is larger. None if these would be more than `most`; memory stays below what so many take. Coordinates are
+  /// the surface's scaled ones times `units`.
   /// Guarantee: the same for any number of threads.
   /// Requires:  the surface outlives the set and its copies.
   /// Errors:    Interrupted.
@@ -95,6 +96,7 @@ bool PieceSet::visit_near(const Point3& p, double& reach, const Visit& visit) co
     for (std::size_t i = 0; i < node.count(); ++i) {
       if (!is_near(gaps[i])) continue;
       // The nearest last, to be taken first.
+      SNUG_EXPECT(waiting < stack.size());
       std::size_t k = waiting++;
       for (; k > begin && stack[k - 1].gap < gaps[i]; --k) stack[k] = stack[k - 1];
       stack[k] = {gaps[i], node.names[i]};
