@@ -19,12 +19,11 @@ Node some_node(PieceCache& cache, std::mt19937_64& random) {
   return node;
 }
 
-void expect_same(const Piece& x, const Piece& y) {
-  EXPECT_EQ(x.root, y.root);
-  EXPECT_EQ(x.patch.path, y.patch.path);
-  EXPECT_EQ(x.patch.points, y.patch.points);
-  EXPECT_EQ(x.offset.base, y.offset.base);
-  EXPECT_EQ(x.offset.radius, y.offset.radius);
+void expect_same(const Patch& patch, const OffsetTriangle& offset, const Piece& made) {
+  EXPECT_EQ(patch.path, made.patch.path);
+  EXPECT_EQ(patch.points, made.patch.points);
+  EXPECT_EQ(offset.base, made.offset.base);
+  EXPECT_EQ(offset.radius, made.offset.radius);
 }
 
 // By node, by name, and split by split: the same bits, whatever came before.
@@ -47,10 +46,10 @@ TEST(piece_cache, knows_a_piece_by_its_name_too) {
       Patch patch = named.surface.patch(name.patch);
       for (unsigned k = 0; k < name.path.level(); ++k) patch = split(patch, name.path.digit(k));
       const Piece made = make_piece(named.surface.library(), name.patch, patch, scratch, model.method());
-      expect_same(cache.piece(node), made);
+      expect_same(cache.patch(node), cache.offset(node), made);
       PieceCache other(model);
-      expect_same(other.piece(name), made);
-      EXPECT_EQ(&cache.piece(name), &cache.piece(node));
+      expect_same(other.patch(name), other.offset(name), made);
+      EXPECT_EQ(&cache.offset(name), &cache.offset(node));
       EXPECT_EQ(&cache.patch(name), &cache.patch(node));
     }
     EXPECT_GT(cache.bytes(), 0u);

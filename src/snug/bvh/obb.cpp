@@ -245,7 +245,8 @@ double error_along(const Vector3& w, const Vector3& n, double error, double norm
     part = std::max(0.0, std::fabs(cosine) - sine * normal_error / std::sqrt(across_sq));
   }
   const Vector3 rest = w - std::copysign(part, cosine) * n;
-  return (part * normal_error + length(rest) * error) * (1 + 0x1p-45) + 0x1p-47 * error;
+  const double most = std::min(part * normal_error + length(rest) * error, length(w) * error);
+  return most * (1 + 0x1p-45) + 0x1p-47 * error;
 }
 
 Extent extent_of(const FittedSet& set, const Vector3& direction) {

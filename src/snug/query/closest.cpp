@@ -79,7 +79,7 @@ class ClosestSearch {
       if (gap_ >= bounds_.prune_distance()) return pruned();
       if (!PieceCache::can_open(at.node)) {
         // Single precision is what is left of it.
-        gap_ = std::max(gap_, gap_of_triangle(at.node, cache_.piece(at.node).offset));
+        gap_ = std::max(gap_, gap_of_triangle(at.node, cache_.offset(at.node)));
         return pruned();
       }
     }

@@ -53,8 +53,8 @@ struct Found {
   std::uint64_t tests = 0;
 };
 
-double size_of(const Piece& piece) {
-  const Triangle& t = piece.offset.base;
+double size_of(const OffsetTriangle& offset) {
+  const Triangle& t = offset.base;
   return std::max({length(t[1] - t[0]), length(t[2] - t[1]), length(t[0] - t[2])});
 }
 
@@ -71,22 +71,22 @@ class PairComparison {
 
   Verb look_at(const NamePair& pair) {
     const auto& [a, b] = pair;
-    const Piece& x = pieces_.piece(a);
-    const Piece& y = pieces_.piece(b);
+    const OffsetTriangle &x = pieces_.offset(a), &y = pieces_.offset(b);
     ++found_.tests;
-    const NearestTriangles near = nearest(x.offset.base, y.offset.base);
-    if (gap_of(near, x.offset.radius, y.offset.radius) > 0) return Verb::drop;
+    const NearestTriangles near = nearest(x.base, y.base);
+    if (gap_of(near, x.radius, y.radius) > 0) return Verb::drop;
     const double size_x = size_of(x), size_y = size_of(y);
     if (near.certain_distance == 0 && attempts_ < max_pair_attempts &&
-        x.offset.radius + y.offset.radius <= std::min(size_x, size_y) / 16) {
+        x.radius + y.radius <= std::min(size_x, size_y) / 16) {
       ++attempts_;
-      if (const auto at = proved_crossing(pieces_.model().surface().library(), x, y)) {
+      if (const auto at = proved_crossing(pieces_.model().surface().library(), {a.patch, pieces_.patch(a), x},
+                                          {b.patch, pieces_.patch(b), y})) {
         set(Found::What::crossing, pair, {clamped(at->on_a), clamped(at->on_b)});
         return Verb::stop;
       }
     }
-    const bool may_x = x.can_split() && a.path.level() < deepest,
-               may_y = y.can_split() && b.path.level() < deepest;
+    const bool may_x = can_split(pieces_.patch(a), x) && a.path.level() < deepest,
+               may_y = can_split(pieces_.patch(b), y) && b.path.level() < deepest;
     first_ = may_x && (!may_y || size_x >= size_y);
     if (found_.tests < budget_ && (may_x || may_y)) return Verb::open;
     if (found_.what == Found::What::apart)

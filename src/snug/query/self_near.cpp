@@ -80,13 +80,13 @@ class LevelPieces {
   LevelPieces(const SurfaceBvh& model, const LevelComplex& complex, unsigned level)
       : complex_(&complex), level_(level), pieces_(pieces_of_self(model)) {}
 
-  [[nodiscard]] const Piece& piece(const PieceName& name) { return pieces_.piece(name); }
+  [[nodiscard]] PieceCache& cache() { return pieces_; }
   [[nodiscard]] Node& node(const PieceName& name) {
     const auto [it, made] = nodes_.try_emplace(name);
     Node& node = it->second;
     if (!made) return node;
     node.name = name;
-    node.offset = pieces_.piece(name).offset;
+    node.offset = pieces_.offset(name);
     const auto corners = complex_->vertices(name);
     for (std::size_t k = 0; k < 3; ++k) {
       node.corners[k] = &vertices_.try_emplace(corners[k]).first->second;
@@ -323,12 +323,11 @@ class NearSearch {
   // Those more than the tolerance apart.
   void drop_apart(std::vector<NearPair>& live) {
     std::vector<std::uint8_t> keep(live.size(), 0);
-    for_each_with_pieces(model_, live.size(), options_.threads, monitor_,
-                         [&](PieceCache& pieces, std::size_t i) {
-                           const Piece& a = pieces.piece(live[i].first);
-                           const Gap gap = gap_between(a.offset, pieces.piece(live[i].second).offset);
-                           keep[i] = gap.least <= options_.tolerance ? 1 : 0;
-                         });
+    for_each_with_pieces(
+        model_, live.size(), options_.threads, monitor_, [&](PieceCache& pieces, std::size_t i) {
+          const Gap gap = gap_between(pieces.offset(live[i].first), pieces.offset(live[i].second));
+          keep[i] = gap.least <= options_.tolerance ? 1 : 0;
+        });
     spend(live.size());
     answer_.pair_tests += live.size();
     keep_if(live, [&](std::size_t i) { return keep[i] != 0; });
@@ -422,16 +421,14 @@ class NearSearch {
   }
 
   std::optional<ProximityPair> proved_near(LevelPieces& pieces, const NearPair& pair) const {
-    const ProximityPair near = measured(pieces, pair);
+    const ProximityPair near = measured(pieces.cache(), pair);
     if (near.distance.upper <= options_.tolerance) return near;
     return {};
   }
 
-  template <class AnyPieces>
-  static ProximityPair measured(AnyPieces& pieces, const NearPair& pair) {
-    const Piece &a = pieces.piece(pair.first), &b = pieces.piece(pair.second);
-    const Gap gap = gap_between(a.offset, b.offset);
-    const double upper = distance_of_points(a.patch, b.patch, gap.at);
+  static ProximityPair measured(PieceCache& pieces, const NearPair& pair) {
+    const Gap gap = gap_between(pieces.offset(pair.first), pieces.offset(pair.second));
+    const double upper = distance_of_points(pieces.patch(pair.first), pieces.patch(pair.second), gap.at);
     return {{pair.first, pair.second}, gap.at, {std::min(gap.least, upper), upper}};
   }
 

@@ -19,7 +19,7 @@ PieceSet enclosures_of(const SurfaceBvh& model, std::span<const PieceName> piece
                        const WorkMonitor& monitor) {
   std::vector<QuadraticTriangle> sets(pieces.size());
   for_each_with_pieces(model, pieces.size(), threads, monitor, [&](PieceCache& kept, std::size_t i) {
-    const OffsetTriangle& offset = kept.piece(pieces[i]).offset;
+    const OffsetTriangle& offset = kept.offset(pieces[i]);
     sets[i] = flat_quadratic(offset.base);
     sets[i].error = enlarged(sets[i].error + offset.radius);
   });

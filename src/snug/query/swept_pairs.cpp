@@ -275,7 +275,7 @@ bool SweptPairs::apart_in_double(const Step& step, Pair& pair) {
   if (pair.widest > near_for_single * size) return false;
   std::array<Triangle, 2> placed;
   for (std::size_t s = 0; s < 2; ++s) {
-    pair.triangles[s] = bodies_[s].scratch.piece(pair.nodes[s]).offset;
+    pair.triangles[s] = bodies_[s].scratch.offset(pair.nodes[s]);
     for (std::size_t k = 0; k < 3; ++k) {
       placed[s][k] = step.middle.frames[s].apply(pair.triangles[s].base[k]);
     }

@@ -6,12 +6,6 @@
 #include <utility>
 
 namespace snug {
-namespace {
-
-// How much larger than a node of a tree a piece is that is split first.
-constexpr float much_larger = 4;
-
-}  // namespace
 
 PairWalk::PairWalk(PairFrames& frames, SearchStats& stats, WideNode::Gaps gaps)
     : frames_(frames),
@@ -24,13 +18,7 @@ NodePair PairWalk::roots() const { return {{frames_.cache(0).root(), frames_.cac
 std::size_t PairWalk::side_to_open(const NodePair& pair) const {
   const auto& [a, b] = pair.nodes;
   const bool can_a = PieceCache::can_open(a), can_b = PieceCache::can_open(b);
-  if (can_a && can_b) {
-    const auto weight = [&](std::size_t side) {
-      const bool splits = pair.nodes[side].bounded() && !pair.nodes[1 - side].bounded();
-      return splits ? size(pair, side) / much_larger : size(pair, side);
-    };
-    return weight(1) > weight(0) ? 1 : 0;
-  }
+  if (can_a && can_b) return size(pair, 1) > size(pair, 0) ? 1 : 0;
   return can_a ? 0 : can_b ? 1 : neither;
 }
 

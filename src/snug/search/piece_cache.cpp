@@ -46,8 +46,9 @@ void PieceCache::Roots::clear() {
 }
 
 std::size_t PieceCache::bytes() const {
-  return splits_.size() * sizeof(Split) + entries_.size() * sizeof(Entry) + bytes_of_points_ +
-         roots_.bytes() + open_nodes_.bytes() + open_pairs_.bytes();
+  return splits_.size() * sizeof(Split) + entries_.size() * sizeof(Entry) +
+         offsets_.size() * sizeof(OffsetTriangle) + bytes_of_points_ + roots_.bytes() + open_nodes_.bytes() +
+         open_pairs_.bytes();
 }
 
 void PieceCache::begin(std::size_t max_bytes) {
@@ -56,9 +57,10 @@ void PieceCache::begin(std::size_t max_bytes) {
     roots_ = {};
     splits_.clear();
     entries_.clear();
+    offsets_.clear();
     open_nodes_ = {};
     open_pairs_ = {};
-    split_count_ = entry_count_ = 0;
+    split_count_ = entry_count_ = offset_count_ = 0;
     bytes_of_points_ = 0;
     query_ = 1;
   }
@@ -67,20 +69,19 @@ void PieceCache::begin(std::size_t max_bytes) {
 void PieceCache::renew(const SurfaceBvh& model) {
   model_ = &model;
   roots_.clear();
-  split_count_ = entry_count_ = 0;
+  split_count_ = entry_count_ = offset_count_ = 0;
 }
 
 template <class Make>
 std::uint32_t PieceCache::add(PatchId root, const Make& make) {
   if (entry_count_ == entries_.size()) entries_.emplace_back();
   Entry& entry = entries_[entry_count_];
-  const std::size_t before = entry.piece.patch.points.capacity();
-  entry.piece.root = root;
-  make(entry.piece.patch);
-  entry.bounded = false;
+  const std::size_t before = entry.patch.points.capacity();
+  entry.root = root;
+  make(entry.patch);
   entry.children.fill(none);
-  entry.split = none;
-  bytes_of_points_ += (entry.piece.patch.points.capacity() - before) * sizeof(Vector3);
+  entry.offset = entry.split = none;
+  bytes_of_points_ += (entry.patch.points.capacity() - before) * sizeof(Vector3);
   return static_cast<std::uint32_t>(entry_count_++);
 }
 
@@ -93,8 +94,7 @@ std::uint32_t PieceCache::root_entry(PatchId root) {
 std::uint32_t PieceCache::child_entry(std::uint32_t parent, unsigned child) {
   const Entry& whole = entries_[parent];
   if (whole.children[child] != none) return whole.children[child];
-  const std::uint32_t made =
-      add(whole.piece.root, [&](Patch& patch) { split(whole.piece.patch, child, patch); });
+  const std::uint32_t made = add(whole.root, [&](Patch& patch) { split(whole.patch, child, patch); });
   entries_[parent].children[child] = made;
   return made;
 }
@@ -111,18 +111,19 @@ std::uint32_t PieceCache::entry_of(const PieceName& name) {
 }
 
 PieceName PieceCache::name(const Node& node) {
-  const Piece& piece = entries_[entry_of(node)].piece;
-  return {piece.root, piece.patch.path};
+  const Entry& entry = entries_[entry_of(node)];
+  return {entry.root, entry.patch.path};
 }
 
-const Piece& PieceCache::bounded(std::uint32_t i) {
+const OffsetTriangle& PieceCache::offset_of_entry(std::uint32_t i) {
   Entry& entry = entries_[i];
-  if (!entry.bounded) {
+  if (entry.offset == none) {
     const BoundMethod method = always_rows_ ? BoundMethod::rows : model_->method();
-    entry.piece.offset = offset_of(model_->surface().library(), entry.piece.patch, points_, method);
-    entry.bounded = true;
+    if (offset_count_ == offsets_.size()) offsets_.emplace_back();
+    offsets_[offset_count_] = offset_of(model_->surface().library(), entry.patch, points_, method);
+    entry.offset = static_cast<std::uint32_t>(offset_count_++);
   }
-  return entry.piece;
+  return offsets_[entry.offset];
 }
 
 PieceCache::Opened PieceCache::open(const Node& node) {
@@ -135,7 +136,7 @@ PieceCache::Opened PieceCache::open(const Node& node) {
   const std::uint32_t parent = entry_of(node);
   Entry& whole = entries_[parent];
   if (whole.split == none) {
-    const Split made{split_node(*model_, whole.piece.patch), parent, 0};
+    const Split made{split_node(*model_, whole.patch), parent, 0};
     if (split_count_ == splits_.size()) {
       splits_.push_back(made);
     } else {

@@ -93,13 +93,15 @@ class PieceCache {
                                           : static_cast<const SplitNode*>(node.boxes)->bounds[node.place];
   }
   /// Its control points. What is referred to here and below stays where it is until begin() or renew().
-  [[nodiscard]] const Patch& patch(const Node& node) { return entries_[entry_of(node)].piece.patch; }
-  /// The same with its offset triangle, in double precision.
-  [[nodiscard]] const Piece& piece(const Node& node) { return bounded(entry_of(node)); }
+  [[nodiscard]] const Patch& patch(const Node& node) { return entries_[entry_of(node)].patch; }
+  /// Its offset triangle, in double precision.
+  [[nodiscard]] const OffsetTriangle& offset(const Node& node) { return offset_of_entry(entry_of(node)); }
   [[nodiscard]] PieceName name(const Node& node);
   /// Of a piece by its name, be it a node or not.
-  [[nodiscard]] const Patch& patch(const PieceName& name) { return entries_[entry_of(name)].piece.patch; }
-  [[nodiscard]] const Piece& piece(const PieceName& name) { return bounded(entry_of(name)); }
+  [[nodiscard]] const Patch& patch(const PieceName& name) { return entries_[entry_of(name)].patch; }
+  [[nodiscard]] const OffsetTriangle& offset(const PieceName& name) {
+    return offset_of_entry(entry_of(name));
+  }
   /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
   [[nodiscard]] static bool can_open(const Node& node) {
     if (node.kind == Node::Kind::tree) return true;
@@ -135,10 +137,11 @@ class PieceCache {
   static constexpr std::uint32_t none = UINT32_MAX;
   // A patch or a piece.
   struct Entry {
-    Piece piece;
-    bool bounded = false;  // Is its offset triangle made?
-    std::array<std::uint32_t, 4> children{none, none, none, none};
+    Patch patch;
+    PatchId root;
+    std::uint32_t offset = none;  // in offsets_
     std::uint32_t split = none;
+    std::array<std::uint32_t, 4> children{none, none, none, none};
   };
   // The nodes that an entry opens to.
   struct Split {
@@ -172,7 +175,7 @@ class PieceCache {
   // Writes the control points of a new entry by make(patch).
   template <class Make>
   [[nodiscard]] std::uint32_t add(PatchId root, const Make& make);
-  [[nodiscard]] const Piece& bounded(std::uint32_t entry);
+  [[nodiscard]] const OffsetTriangle& offset_of_entry(std::uint32_t entry);
 
   const SurfaceBvh* model_;
   std::size_t max_pieces_;
@@ -185,7 +188,8 @@ class PieceCache {
   // Elements beyond the counts are spare memory.
   std::deque<Split> splits_;
   std::deque<Entry> entries_;
-  std::size_t split_count_ = 0, entry_count_ = 0;
+  std::deque<OffsetTriangle> offsets_;
+  std::size_t split_count_ = 0, entry_count_ = 0, offset_count_ = 0;
   std::size_t bytes_of_points_ = 0;
   std::uint32_t query_ = 0;
   std::size_t touched_ = 0;

@@ -51,15 +51,27 @@ PieceBounds::PieceBounds(const OffsetTriangle& offset, const QuadraticTriangle& 
   radius_ = float_up(enlarged(offset.radius + spatial_error(base_moved + rounding)));
   const double net_moved = spatial_error(moved + rounding);
   error_ = float_up(enlarged(quadratic.error + net_moved));
-  if (quadratic.normal_error < quadratic.error) {
-    normal_ = single(quadratic.normal);
-    const double turned = length(wide(normal_) - quadratic.normal) * quadratic.error;
-    normal_error_ = float_up(enlarged(quadratic.normal_error + turned + (1 + 0x1p-20) * net_moved));
-  }
+  keep_normal(quadratic, net_moved);
   // Not a number is not less.
   if (finite && radius_ < INFINITY && error_ < INFINITY) return;
   *this = {};
   radius_ = error_ = INFINITY;
+}
+
+// Of a normal that is turned by rounding a difference d has a part larger by at most as much of |d|.
+void PieceBounds::keep_normal(const QuadraticTriangle& quadratic, double net_moved) {
+  if (!(quadratic.normal_error < quadratic.error)) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    normal_[k] = static_cast<std::int8_t>(std::lround(127 * std::clamp(quadratic.normal[k], -1.0, 1.0)));
+  }
+  const double turned = length(normal() - quadratic.normal) * quadratic.error;
+  const double along = enlarged(quadratic.normal_error + turned + 1.02 * net_moved);
+  const double share = std::ceil(255 * (1 + 0x1p-40) * along / error());
+  if (share <= 255) {
+    normal_share_ = static_cast<std::uint8_t>(share);
+  } else {
+    normal_ = {};
+  }
 }
 
 Triangle PieceBounds::base(const Point3& origin) const {

@@ -38,7 +38,7 @@ class PieceBounds {
   /// Upper bound of |dot(w, x - q)| for a point x of the piece and the quadratic's point q at its parameter.
   /// Requires:  |w| at most about 1.
   [[nodiscard]] double error_along(const Vector3& w) const {
-    return snug::error_along(w, wide(normal_), error(), static_cast<double>(normal_error_));
+    return snug::error_along(w, normal(), error(), normal_share_ / 255.0 * error());
   }
 
   /// Bounds of the distance of a point, relative to the origin, from the quadratic. At the parameter it is no more than the
@@ -55,6 +55,11 @@ class PieceBounds {
   [[nodiscard]] QuadraticDistance distance(const Vector3& point) const;
 
  private:
+  void keep_normal(const QuadraticTriangle& quadratic, double net_moved);
+  [[nodiscard]] Vector3 normal() const {
+    return (1.0 / 127) * Vector3{static_cast<double>(normal_[0]), static_cast<double>(normal_[1]),
+                                 static_cast<double>(normal_[2])};
+  }
   using Single3 = std::array<float, 3>;
   [[nodiscard]] static Vector3 wide(const Single3& v) {
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
@@ -63,8 +68,9 @@ class PieceBounds {
   std::array<Single3, 3> base_{};
   std::array<Single3, 6> net_{};  // of the quadratic: corners, then middles of the edges 01, 12, 20
   float radius_ = 0, error_ = 0;
-  Single3 normal_{};  // across the quadratic, or zero
-  float normal_error_ = 0;
+  // Across the quadratic, times 127, or zero; and a share of the error, times 255, that covers the error along it.
+  std::array<std::int8_t, 3> normal_{};
+  std::uint8_t normal_share_ = 0;
   // Upper bounds of |quadratic - triangles| and, twice, of |x|_1 for differences of Bezier points from the first.
   float flattening_ = 0, spread_ = 0;
 };

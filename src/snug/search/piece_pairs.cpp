@@ -33,7 +33,7 @@ bool PiecePairs::at_single_precision(const NodePair& pair) {
 PiecePair PiecePairs::nearest_in_double(const NodePair& pair) {
   std::array<OffsetTriangle, 2> offsets;
   for (std::size_t s = 0; s < 2; ++s) {
-    offsets[s] = frames_.cache(s).piece(pair.nodes[s]).offset;
+    offsets[s] = frames_.cache(s).offset(pair.nodes[s]);
   }
   PiecePair pieces = nearest(pair, offsets);
   const Witness exact = witness(pieces);

@@ -33,7 +33,7 @@ struct SurfaceBvhOptions {
 
 /// A surface made ready for queries: a tree down to its patches, parts and leaves of which are made where
 /// they are not yet. Nothing else ever changes, but by refit(); may be read by many threads.
-/// Cost:      about 0.6 microseconds and 15 bytes a patch, and 210 bytes a patch that a query came near; of
+/// Cost:      about 0.6 microseconds and 15 bytes a patch, and 200 bytes a patch that a query came near; of
 ///            large models 0.1 and 40, and 0.6 a patch that a query came near. See bench/results/bars.txt.
 class SurfaceBvh {
  public:

@@ -178,7 +178,7 @@ class Winding {
   // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much
   // nearer to it than the set around it.
   [[nodiscard]] double gap_of(const Node& node) const {
-    const OffsetTriangle& offset = cache_.piece(node).offset;
+    const OffsetTriangle& offset = cache_.offset(node);
     return snug::gap_of(nearest({point_, point_, point_}, offset.base), offset.radius, spatial_error(error_));
   }
 
