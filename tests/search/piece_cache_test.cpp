@@ -35,8 +35,11 @@ TEST(piece_cache, knows_a_piece_by_its_name_too) {
     for (std::size_t p = 0; p < named.surface.patch_count(); ++p)
       any = any || named.surface.has_patch(PatchId(p));
     if (!any) return;
-    const SurfaceBvh model(named.surface);
-    PieceCache cache(model);
+    // By rows, by tables, and by rows whatever the model has.
+    const bool table = random() % 2 == 0, always_rows = random() % 2 == 0;
+    const SurfaceBvh model(named.surface, {.method = table ? BoundMethod::table : BoundMethod::rows});
+    const BoundMethod method = table && !always_rows ? BoundMethod::table : BoundMethod::rows;
+    PieceCache cache(model, 50'000, always_rows);
     BoundingPoints scratch;
     for (int trial = 0; trial < 30; ++trial) {
       if (trial % 10 == 9) cache.begin(0);
@@ -45,14 +48,17 @@ TEST(piece_cache, knows_a_piece_by_its_name_too) {
       const PieceName name = cache.name(node);
       Patch patch = named.surface.patch(name.patch);
       for (unsigned k = 0; k < name.path.level(); ++k) patch = split(patch, name.path.digit(k));
-      const Piece made = make_piece(named.surface.library(), name.patch, patch, scratch, model.method());
+      const Piece made = make_piece(named.surface.library(), name.patch, patch, scratch, method);
       expect_same(cache.patch(node), cache.offset(node), made);
-      PieceCache other(model);
+      PieceCache other(model, 50'000, always_rows);
       expect_same(other.patch(name), other.offset(name), made);
       EXPECT_EQ(&cache.offset(name), &cache.offset(node));
       EXPECT_EQ(&cache.patch(name), &cache.patch(node));
     }
-    EXPECT_GT(cache.bytes(), 0u);
+    // What was open is counted, and dropped with the pieces.
+    cache.open_pairs().start(Order::last_first);
+    for (int i = 0; i < 10'000; ++i) cache.open_pairs().add({});
+    EXPECT_GT(cache.bytes(), 10'000 * sizeof(NodePair));
     cache.begin(0);
     EXPECT_LT(cache.bytes(), 100'000u);
   });

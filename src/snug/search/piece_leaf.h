@@ -13,7 +13,7 @@ namespace snug {
 
 /// Bounds of a piece that queries read without its control points: its offset triangle, and a quadratic Bezier
 /// triangle near it. Numbers of single precision relative to an origin, which is its node's, read in double.
-/// Guarantee: the radius and the error cover what rounding to single precision moved.
+/// Guarantee: the radius and both errors cover what rounding to single precision moved.
 class PieceBounds {
  public:
   PieceBounds() = default;
