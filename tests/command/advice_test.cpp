@@ -67,8 +67,8 @@ TEST_F(advice, is_no_budget_where_a_query_may_keep_no_more_pieces) {
   const Outcome same = run_snug({"collide", pawn, pawn, "--tolerance", "0", "--max-splits", "1000000000"});
   EXPECT_EQ(same.status, 5);
   EXPECT_EQ(same.out.find("max-splits"), std::string::npos) << same.out;
-  const Outcome apart = run_snug({"distance", pawn, model("bust.obj"), "--move-b", "0.6 0 0", "--absolute",
-                                  "1e-12", "--max-splits", "1000000000"});
+  const Outcome apart = run_snug({"distance", pawn, model("bust.obj"), "--move-b", "3 0 0", "--absolute",
+                                  "1e-15", "--max-splits", "1000000000"});
   EXPECT_EQ(apart.status, 5);
   EXPECT_NE(apart.out.find("rounding or memory"), std::string::npos) << apart.out;
 }

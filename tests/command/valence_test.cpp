@@ -76,9 +76,7 @@ TEST_P(largest_valence, is_answered_and_the_next_is_refused) {
   write(rays, "0.2 0.3 2 0 0 -1\n3 0.1 0.1 -1 0 0\n");
   const std::string mesh = make(largest);
   const std::vector<std::vector<std::string>> questions{
-      {"closest", "--points", points},
-      {"ray", "--rays", rays},
-      {"tessellate", "--error", "5%", "-o", folder.file("out.ply")}};
+      {"ray", "--rays", rays}, {"tessellate", "--error", "5%", "-o", folder.file("out.ply")}};
   for (std::vector<std::string> question : questions) {
     const std::string name = question[0];
     question.insert(question.begin() + 1, "-");

@@ -516,7 +516,7 @@ TEST(ground, answers_are_true) {
 // The same of surfaces whose control points have moved and whose trees were refitted: journeys with each
 // scheme, tag and rule, nine pairs of ten at least. SNUG_MOVED=N: so many placements.
 TEST(ground, answers_about_moved_surfaces_are_true) {
-  const std::uint64_t usual = 2 * testing::covering_rows().size();
+  const std::uint64_t usual = 5 * testing::covering_rows().size() / 4;
   const std::uint64_t first = testing::number_of("SNUG_FIRST", 0);
   const std::uint64_t count = testing::number_of("SNUG_MOVED", usual);
   testing::GroundTrials trials(1, true);

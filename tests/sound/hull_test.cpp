@@ -123,6 +123,7 @@ TEST(hulls, of_poles_of_many_narrow_faces_sandwich_them) {
 }
 
 // Two parts of each pair of kinds, from far apart to through each other: usually at one of the distances, each kind at all.
+// Beside or above each other alike: a pair is drawn in one order.
 TEST(hulls, of_parts_beside_each_other_sandwich_them) {
   namespace meshes = oracle::meshes;
   TaggedMesh sharp = meshes::cube(), semi = meshes::prism(5), plate = meshes::cube(),
@@ -153,14 +154,16 @@ TEST(hulls, of_parts_beside_each_other_sandwich_them) {
                                                               {"hollow", hollow},
                                                               {"flat", meshes::quad_grid(2, 2)}};
   const std::array distances{1.0, 0.03, 0.002, 0.0, -0.2};
-  const std::uint64_t pairs = kinds.size() * kinds.size(),
+  const std::uint64_t pairs = kinds.size() * (kinds.size() + 1) / 2,
                       of_each = std::min<std::uint64_t>(testing::number_of("SNUG_PLACEMENTS", pairs) / pairs,
                                                         distances.size());
   Outcomes outcomes;
   std::mt19937_64 random(5);
   std::size_t next = 0;
-  for (const auto& [name_a, a] : kinds) {
-    for (const auto& [name_b, b] : kinds) {
+  for (std::size_t first = 0; first < kinds.size(); ++first) {
+    for (std::size_t second = first; second < kinds.size(); ++second) {
+      const auto& [name_a, a] = kinds[first];
+      const auto& [name_b, b] = kinds[second];
       for (std::uint64_t i = 0; i < of_each; ++i) {
         const double apart = distances[next++ % distances.size()];
         double high = -INFINITY, low = INFINITY;
