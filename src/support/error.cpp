@@ -18,8 +18,7 @@ std::string shortest(double x) {
   return {digits, static_cast<std::size_t>(end - digits)};
 }
 
-void require_length(double x, const char* what) {
-  if (x >= 0 && std::isfinite(x)) return;
+void refuse_length(double x, const char* what) {
   throw InputError(InputProblem::value,
                    std::string(what) + " is " + shortest(x) + ": give a finite number that is not negative");
 }

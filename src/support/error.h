@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include <snug/run.h>
@@ -19,7 +20,10 @@ inline void require_value(bool holds, const char* message) {
 /// The shortest digits that read back as x: 1e-300 is not 0.
 [[nodiscard]] std::string shortest(double x);
 
+[[noreturn]] void refuse_length(double x, const char* what);
 /// Throws InputError (value), naming `what`, unless x is finite and >= 0.
-void require_length(double x, const char* what);
+inline void require_length(double x, const char* what) {
+  if (!(x >= 0 && x < INFINITY)) refuse_length(x, what);
+}
 
 }  // namespace snug

@@ -122,7 +122,7 @@ struct TwoNodes {
         for (PlacedFrame& frame : frames) frame.translation[k] += 0x1p20;
       }
     }
-    view = View(frames[0], frames[1]);
+    view = View(RelativeFrame(frames[0], frames[1]));
     switch (random() % 3) {
       case 0:
         break;
@@ -221,7 +221,7 @@ TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
   for (int trial = 0; trial < static_cast<int>(testing::fewer(4000)); ++trial) {
     const TwoNodes two(random);
     if (!two.view.frame.comparable) continue;
-    const TreeView view(two.view);
+    const TreeView view(two.view.frame);
     const auto in_a = two.images(0), in_b = two.images(1);
     for (std::size_t j = 0; j < in_b.size(); ++j) {
       const kernels::Deepest near = two.nodes[0].near_boxes(two.nodes[1], j, view, two.prune_distance);
@@ -249,6 +249,23 @@ TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
 }
 
 // Placed in double precision, or in single as a part of its node.
+// A pair of frames sees each other as either does by itself, to the bit.
+TEST(wide_node, frames_that_are_made_together_are_those_made_alone) {
+  std::mt19937_64 random(31);
+  for (int trial = 0; trial < 200; ++trial) {
+    const TwoNodes two(random);
+    const auto both = RelativeFrame::both(two.frames[0], two.frames[1]);
+    for (std::size_t s = 0; s < 2; ++s) {
+      const RelativeFrame alone(two.frames[s], two.frames[1 - s]);
+      EXPECT_EQ(both[s].comparable, alone.comparable);
+      if (!alone.comparable) continue;
+      EXPECT_EQ(both[s].rows, alone.rows);
+      EXPECT_EQ(both[s].translation, alone.translation);
+      EXPECT_EQ(both[s].slack, alone.slack);
+    }
+  }
+}
+
 TEST(wide_node, distances_to_a_placed_box_never_exceed_those_of_the_contents) {
   std::mt19937_64 random(23);
   std::size_t gaps = 0, total = 0;
@@ -325,7 +342,7 @@ TEST(wide_node, distances_are_the_same_on_every_instruction_set) {
           add(two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, which, one));
         }
         const kernels::Deepest near =
-            two.nodes[0].near_boxes(two.nodes[1], j, TreeView(two.view), two.prune_distance);
+            two.nodes[0].near_boxes(two.nodes[1], j, TreeView(two.view.frame), two.prune_distance);
         all.insert(all.end(),
                    {static_cast<float>(near.places), static_cast<float>(near.deepest), near.others});
       }
@@ -358,7 +375,7 @@ TEST(wide_node, distances_hold_for_sources_of_any_smallness) {
         frame_b.translation[k] += static_cast<double>(at_a[k] - at_b[k]) + unit(random);
       }
       const WideNode one({&of_a, 1}), other({&of_b, 1});
-      const View view(frame_a, frame_b);
+      const View view(RelativeFrame(frame_a, frame_b));
       ASSERT_TRUE(view.frame.comparable);
       std::vector<Extended> in_a, in_b;
       for (const Point3& p : a) in_a.push_back(image(frame_a, p));
@@ -409,7 +426,7 @@ TEST(wide_node, boxes_side_by_side_are_as_far_as_they_are) {
   };
   const Obb a = cube(0), b = cube(3);
   const WideNode one({&a, 1}), two({&b, 1});
-  const View view(unmoved(), unmoved());
+  const View view(RelativeFrame(unmoved(), unmoved()));
   for (const WideNode::Gaps which : both_gaps) {
     WideNode::Distances found;
     static_cast<void>(one.distances(two, 0, view, INFINITY, which, found));
@@ -427,7 +444,7 @@ TEST(wide_node, what_is_not_finite_is_apart_from_nothing) {
     const Extent far{-1, bad};
     const Obb a = box_of(Obb{}.axes, {far, far, far}), b = box_around({{9, 9, 9}});
     const std::array both{b, a}, turned{a, b};
-    const View view(unmoved(), unmoved());
+    const View view(RelativeFrame(unmoved(), unmoved()));
     for (const WideNode::Gaps which : both_gaps) {
       // A box of a node where another one is not finite is not apart from anything either, or it is.
       for (const auto& [one, other, place] : {std::tuple{WideNode({&a, 1}), WideNode({&b, 1}), 0u},

@@ -107,7 +107,8 @@ TEST(piece_set, visits_what_is_near) {
         return false;
       }));
       for (std::size_t i = 0; i < count; ++i) {
-        if (!visited[i]) EXPECT_GT(distance(flat[i].corners[0], p), reach);
+        if (visited[i]) continue;
+        EXPECT_GT(distance(flat[i].corners[0], p), reach);
       }
       double nearest = INFINITY;
       set.visit_near(p, nearest, [&](std::uint32_t piece) {

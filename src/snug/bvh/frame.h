@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <snug/geometry/motion.h>
 #include <support/point.h>
 #include <support/scaling.h>
@@ -47,10 +49,16 @@ struct RelativeFrame {
 
   RelativeFrame() = default;
   RelativeFrame(const PlacedFrame& target, const PlacedFrame& source);
+  /// How the second is seen from the first, and the first from the second.
+  [[nodiscard]] static std::array<RelativeFrame, 2> both(const PlacedFrame& a, const PlacedFrame& b);
 
   [[nodiscard]] Point3 apply(const Point3& p) const {
     return Point3{} + (times(rows, p - Point3{}) + translation);
   }
+
+ private:
+  // `turn` is that of M.
+  RelativeFrame(const PlacedFrame& target, const PlacedFrame& source, const Rows3& turn);
 };
 
 }  // namespace snug

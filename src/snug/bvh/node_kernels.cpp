@@ -254,8 +254,9 @@ Near seen_along(const float* node, float reach, const SeenBox& other, const Turn
   return near;
 }
 
-Deepest walk_step(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,
-                  const TreeView& view, float prune_distance) {
+Deepest walk_step(const NodeBoxes& node, const NodeBoxes& other, std::size_t place, const TreeView& view,
+                  float prune_distance) {
+  const std::uint32_t count = node.count;
   const float* const column = other.rows + place;
   const float from[3] = {static_cast<float>(node.origin[0]), static_cast<float>(node.origin[1]),
                          static_cast<float>(node.origin[2])};
@@ -389,9 +390,9 @@ Near obb_distances(const float* node, const float point[3], float slack, float p
   return HWY_DYNAMIC_DISPATCH(boxes_to_point)(node, point, slack, prune_distance, out);
 }
 
-Deepest near_boxes(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,
-                   const TreeView& view, float prune_distance) {
-  return HWY_DYNAMIC_DISPATCH(walk_step)(node, count, other, place, view, prune_distance);
+Deepest near_boxes(const NodeBoxes& node, const NodeBoxes& other, std::size_t place, const TreeView& view,
+                   float prune_distance) {
+  return HWY_DYNAMIC_DISPATCH(walk_step)(node, other, place, view, prune_distance);
 }
 
 void obb_extents(const float* node, float reach, const float direction[3], float* out) {

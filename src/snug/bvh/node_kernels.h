@@ -57,11 +57,13 @@ struct TreeView {
   float slack;  ///< taken off from gaps, besides what roundings do to them
   float reach;  ///< of the translation: the sum of its sizes
 };
-/// A node: its boxes' rows, and the origin they are relative to.
-struct NodeRows {
-  const float* rows;
-  float reach;  ///< as in obb_distances()
-  double origin[3];
+/// The boxes of a node, and the origin they are relative to.
+struct alignas(32) NodeBoxes {
+  float rows[obb_rows * node_width] = {};
+  float sizes[node_width] = {};
+  double origin[3] = {};
+  float reach = 0;  ///< of the largest, as in obb_distances()
+  std::uint32_t count = 0;
 };
 /// What roundings of a walk do to a gap, at most, as a part of all that is involved.
 inline constexpr float walk_roundings = 80 * 0x1p-24F;
@@ -72,8 +74,8 @@ struct Deepest {
 };
 /// The boxes of `node` against the box at a place of `other`, all placed in single precision: quicker than obb_distances(), and
 /// less exact by some 2^-15 of the trees' sizes.
-Deepest near_boxes(const NodeRows& node, std::uint32_t count, const NodeRows& other, std::size_t place,
-                   const TreeView& view, float prune_distance);
+Deepest near_boxes(const NodeBoxes& node, const NodeBoxes& other, std::size_t place, const TreeView& view,
+                   float prune_distance);
 /// Which gaps are looked for: across fifteen axes, or along the line of the centres and Turn::direction,
 /// which are sharper for boxes that are far apart.
 enum class Gaps : std::uint8_t { axes, lines };

@@ -17,7 +17,7 @@ struct View {
   float slack = 0, to_world = 1;  ///< those of the frame
 
   View() = default;
-  View(const PlacedFrame& target, const PlacedFrame& source);
+  explicit View(const RelativeFrame& frame);
   /// Gaps are looked for along this direction of the target, from the target to the source.
   void look_along(const Vector3& direction);
 };
@@ -26,8 +26,8 @@ struct View {
 /// Source:    derivations/boxes.md, "A walk in single precision".
 struct TreeView : kernels::TreeView {
   TreeView() = default;
-  /// Requires:  view.frame.comparable.
-  explicit TreeView(const View& view);
+  /// Requires:  frame.comparable, and so must be the other one's.
+  explicit TreeView(const RelativeFrame& frame);
   /// About what gaps are lowered by, in units of the target, for trees of this size.
   [[nodiscard]] float doubt(float size) const;
 };
@@ -41,7 +41,7 @@ struct PlacedBox {
 /// Up to eight boxes, in single precision relative to an origin of their own, so that all eight are compared
 /// with another box at once and small ones lose nothing far from the coordinates' origin.
 /// Guarantee: rounding to single precision never makes boxes smaller. The same bits on every instruction set.
-class alignas(32) WideNode {
+class WideNode {
  public:
   static constexpr std::size_t width = kernels::node_width;
   using Distances = std::array<float, width>;
@@ -53,10 +53,10 @@ class alignas(32) WideNode {
   /// Requires:  1 to 8 boxes, coordinates at most about 4, sizes that are not finite allowed.
   explicit WideNode(std::span<const Obb> boxes);
 
-  [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] const Point3& origin() const { return origin_; }
+  [[nodiscard]] std::size_t count() const { return boxes_.count; }
+  [[nodiscard]] Point3 origin() const { return {boxes_.origin[0], boxes_.origin[1], boxes_.origin[2]}; }
   /// Upper bound of the distance of two points of a box, for choosing which one to open.
-  [[nodiscard]] float size_of(std::size_t place) const { return sizes_[place]; }
+  [[nodiscard]] float size_of(std::size_t place) const { return boxes_.sizes[place]; }
   /// A box as it is kept, read in double: what it bounds is among all centre + sum of s_k half_k axis_k with |s_k| <= 1,
   /// up to one rounding of the origin. Its axes are orthonormal up to a few roundings of single precision.
   [[nodiscard]] Obb box(std::size_t place) const;
@@ -75,7 +75,7 @@ class alignas(32) WideNode {
   /// Guarantee: those of others are farther apart than that, as above, and than the result's `others`.
   [[nodiscard]] kernels::Deepest near_boxes(const WideNode& other, std::size_t place, const TreeView& view,
                                             float prune_distance) const {
-    return kernels::near_boxes(numbers(), count_, other.numbers(), place, view, prune_distance);
+    return kernels::near_boxes(boxes_, other.boxes_, place, view, prune_distance);
   }
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
@@ -89,15 +89,7 @@ class alignas(32) WideNode {
   void extents(const Vector3& direction, Distances& out) const;
 
  private:
-  [[nodiscard]] kernels::NodeRows numbers() const {
-    return {rows_.data(), reach_, {origin_.x, origin_.y, origin_.z}};
-  }
-
-  alignas(32) std::array<float, kernels::obb_rows * width> rows_{};
-  std::array<float, width> sizes_{};
-  Point3 origin_;
-  float reach_ = 0;  // of the largest, see kernels
-  std::uint32_t count_ = 0;
+  kernels::NodeBoxes boxes_;
 };
 
 }  // namespace snug

@@ -248,15 +248,19 @@ void make_solid(const PlacedBvh& a, const PlacedBvh& b, const Run& run, Collisio
   }
 }
 
-Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
+Collision apart_by(double gap) {
   Collision answer;
+  answer.verdict = Verdict::separated;
+  answer.distance.lower = gap;
+  return answer;
+}
+
+Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
   const bool verdict_alone = options.witness == WitnessKind::none && !options.measure;
   if (const double gap = root_gap(a, b, options.margin); gap > options.margin) {
-    answer.verdict = Verdict::separated;
-    answer.distance.lower = verdict_alone ? gap : std::max(gap, outer_gap(a, b));
-    return answer;
+    return apart_by(verdict_alone ? gap : std::max(gap, outer_gap(a, b)));
   }
-  answer = CollideSearch(a, b, options, run).run();
+  Collision answer = CollideSearch(a, b, options, run).run();
   if (answer.verdict == Verdict::separated && !verdict_alone) {
     answer.distance.lower = std::max(answer.distance.lower, std::min(outer_gap(a, b), answer.distance.upper));
   }

@@ -92,7 +92,7 @@ class NestingTest {
     const PlacedBvh& other = *side_[1 - side];
     const BoundedPoint placed = frames_.frame(side).apply(sample);
     if (beyond(frames_.frame(1 - side), other.model.tree().ball(), placed)) return;
-    const RelativeFrame& seen = frames_.view(1 - side).frame;
+    const RelativeFrame& seen = frames_.seen_from(1 - side);
     std::optional<int> number;
     if (seen.comparable) {
       number = winding_number(other.scratch, seen.apply(sample.position),
@@ -107,7 +107,7 @@ class NestingTest {
 
   // Of a point in the frame of `side`, taken as it is.
   [[nodiscard]] bool is_inside_both(std::size_t side, const Point3& point) {
-    const RelativeFrame& seen = frames_.view(1 - side).frame;
+    const RelativeFrame& seen = frames_.seen_from(1 - side);
     const Point3 other = seen.apply(point);
     if (!seen.comparable || !(depth_in_box(1 - side, other) > 0)) return false;
     return winding_number(side_[side]->scratch, point, 0, monitor_).value_or(0) != 0 &&
@@ -125,7 +125,7 @@ class NestingTest {
   }
 
   [[nodiscard]] std::vector<PatchId> deepest(std::size_t side) {
-    const RelativeFrame& seen = frames_.view(1 - side).frame;
+    const RelativeFrame& seen = frames_.seen_from(1 - side);
     if (!seen.comparable) return {};
     const LimitSurface& surface = side_[side]->model.surface();
     std::vector<std::pair<double, PatchId>> inside;

@@ -224,7 +224,7 @@ bool proves_crossing(PairFrames& frames, const PiecePair& pieces) {
     const CrossingTest crossed(whole[s], heights[s]);
     const SurfaceBvh& other = frames.cache(1 - s).model();
     if (crossed.possible() && crosses_near({other.surface().library(), other.method()}, whole[1 - s],
-                                           clamped(at[1 - s]), crossed, frames.view(s).frame)) {
+                                           clamped(at[1 - s]), crossed, frames.seen_from(s))) {
       return true;
     }
   }

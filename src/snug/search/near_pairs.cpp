@@ -13,13 +13,13 @@ constexpr float max_doubt = 0x1p-7F;
 NearPairs::NearPairs(PairFrames& frames, SearchStats& stats, double distance)
     : stats_(stats), model_{&frames.cache(0).model(), &frames.cache(1).model()} {
   for (std::size_t s = 0; s < 2; ++s) {
-    const View& view = frames.view(s);
-    usable_ = usable_ && view.frame.comparable;
+    const RelativeFrame& seen = frames.seen_from(s);
+    usable_ = usable_ && seen.comparable;
     if (!usable_) return;
-    view_[s] = TreeView(view);
-    distance_[s] = static_cast<float>(distance * view.frame.from_world);
+    view_[s] = TreeView(seen);
+    distance_[s] = static_cast<float>(distance * seen.from_world);
     // Rounded down: by one rounding of the factor and two of products.
-    to_query_[s] = view.to_world * (1 - 4 * 0x1p-24F);
+    to_query_[s] = static_cast<float>(seen.to_world) * (1 - 4 * 0x1p-24F);
     usable_ = usable_ && view_[s].doubt(2) < max_doubt;
     stack_[0][s] = {&model_[s]->tree().root(), 0, none};
   }
@@ -44,12 +44,8 @@ bool NearPairs::next(NodePair& pair) {
   return false;
 }
 
-void NearPairs::push(const Names& pair) {
-  if (waiting_ < stack_.size()) {
-    stack_[waiting_] = pair;
-  } else {
-    more_.push_back(pair);
-  }
+void NearPairs::push_beyond(const Names& pair) {
+  more_.push_back(pair);
   ++waiting_;
 }
 

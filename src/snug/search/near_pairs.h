@@ -44,7 +44,14 @@ class NearPairs {
 
   // Opens a box; its most deeply overlapping child takes its place, the others go on the stack. False if none is near.
   bool open(Names& pair, std::size_t side);
-  void push(const Names& pair);
+  void push(const Names& pair) {
+    if (waiting_ < stack_.size()) {
+      stack_[waiting_++] = pair;
+    } else {
+      push_beyond(pair);
+    }
+  }
+  void push_beyond(const Names& pair);
   Names pop();
 
   SearchStats& stats_;

@@ -21,10 +21,12 @@ PowerOfTwo joint_scale(const PlacedBvh& a, const PlacedBvh& b) {
 // From the units of a surface.
 double scale_to(PowerOfTwo world, PowerOfTwo own) { return (own.inverse() * world).apply(1.0); }
 
+Rows3 rows_of(const Motion& pose) { return {pose.row(0), pose.row(1), pose.row(2)}; }
+
 // How a surface is placed, in units of which one mesh unit is `world` many.
 PlacedFrame frame_of(const PlacedBvh& placed, PowerOfTwo world) {
   const Motion& pose = placed.pose;
-  return {.rows = {pose.row(0), pose.row(1), pose.row(2)},
+  return {.rows = rows_of(pose),
           .scale = scale_to(world, placed.model.surface().scale()),
           .translation = world.apply(pose.offset()),
           .defect = pose.defect(),
@@ -40,9 +42,7 @@ struct Outline {
   double size;    // of what was summed up for it
 
   Outline(const PlacedBvh& placed, double in_scale, PowerOfTwo world)
-      : dop(placed.model.tree().dop()),
-        rows{placed.pose.row(0), placed.pose.row(1), placed.pose.row(2)},
-        scale(in_scale) {
+      : dop(placed.model.tree().dop()), rows(rows_of(placed.pose)), scale(in_scale) {
     const Vector3 local = scale * (dop.centre() - Point3{}), translation = world.apply(placed.pose.offset());
     centre = Point3{} + (times(rows, local) + translation);
     size = 2 * max_abs(local) + max_abs(translation) + scale * dop.radius();
@@ -73,9 +73,10 @@ struct PlacedRoot {
 
   explicit PlacedRoot(const PlacedBvh& placed) {
     const Obb& box = placed.model.box();
-    for (std::size_t k = 0; k < 3; ++k) axes[k] = placed.pose.rotate(box.axes[k]);
+    const Rows3 rows = rows_of(placed.pose);
+    for (std::size_t k = 0; k < 3; ++k) axes[k] = times(rows, box.axes[k]);
     half = box.half;
-    centre = placed.pose.rotate(box.centre - Point3{}) + placed.pose.offset();
+    centre = times(rows, box.centre - Point3{}) + placed.pose.offset();
     size = 4 * max_abs(box.centre - Point3{}) + max_abs(placed.pose.offset()) + half.x + half.y + half.z;
   }
 };
@@ -105,6 +106,8 @@ double gap_of_boxes(const PlacedRoot& a, const PlacedRoot& b, double defects, do
     const double far = b.half[j] + a.half.x * size[0][j] + a.half.y * size[1][j] + a.half.z * size[2][j];
     if (shows_enough(along_b[j], far)) return widest;
   }
+  // Boxes that lie in each other along all of these are seldom apart along a cross product.
+  if (enough < INFINITY && widest < -0.0625 * std::min(max_abs(a.half), max_abs(b.half))) return widest;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -121,8 +124,8 @@ double gap_of_boxes(const PlacedRoot& a, const PlacedRoot& b, double defects, do
 
 double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
   const Ball &ball_a = a.model.ball(), &ball_b = b.model.ball();
-  const Vector3 centre_a = a.pose.rotate(ball_a.centre - Point3{}),
-                centre_b = b.pose.rotate(ball_b.centre - Point3{});
+  const Vector3 centre_a = times(rows_of(a.pose), ball_a.centre - Point3{}),
+                centre_b = times(rows_of(b.pose), ball_b.centre - Point3{});
   const Vector3 between = (b.pose.offset() - a.pose.offset()) + (centre_b - centre_a);
   const double apart = length(between), radii = ball_a.radius + ball_b.radius;
   const double defects = a.pose.defect() + b.pose.defect();
@@ -143,7 +146,8 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
 PairFrames::PairFrames(const PlacedBvh& a, const PlacedBvh& b)
     : cache_{&a.scratch, &b.scratch},
       world_(joint_scale(a, b)),
-      frame_{frame_of(a, world_), frame_of(b, world_)} {
+      frame_{frame_of(a, world_), frame_of(b, world_)},
+      seen_from_(RelativeFrame::both(frame_[0], frame_[1])) {
   require_value(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model,
                 "pair of models: each needs a scratch of its own, made for it");
   for (PieceCache* cache : cache_) cache->begin();

@@ -21,9 +21,11 @@ class PairFrames {
 
   [[nodiscard]] PieceCache& cache(std::size_t side) const { return *cache_[side]; }
   [[nodiscard]] const PlacedFrame& frame(std::size_t side) const { return frame_[side]; }
-  /// How the other side is seen from the frame of `side`; made on first use.
+  /// How the other side is seen from the frame of `side`.
+  [[nodiscard]] const RelativeFrame& seen_from(std::size_t side) const { return seen_from_[side]; }
+  /// The same for boxes; made on first use.
   [[nodiscard]] const View& view(std::size_t side) {
-    if (!view_[side]) view_[side].emplace(frame_[side], frame_[1 - side]);
+    if (!view_[side]) view_[side].emplace(seen_from_[side]);
     return *view_[side];
   }
   /// Gaps::lines looks along this direction, from A to B.
@@ -33,6 +35,7 @@ class PairFrames {
   std::array<PieceCache*, 2> cache_;
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
+  std::array<RelativeFrame, 2> seen_from_;
   std::array<std::optional<View>, 2> view_;
 };
 

@@ -51,8 +51,7 @@ PiecePair PiecePairs::nearest(const NodePair& pair, const std::array<OffsetTrian
   for (std::size_t s = 0; s < 2; ++s) {
     const PlacedFrame& frame = frames_.frame(s);
     for (std::size_t k = 0; k < 3; ++k) pieces.base[s][k] = frame.apply(offsets[s].base[k]);
-    pieces.radii[s] =
-        enlarged(offsets[s].radius * frame.growth() + spatial_error(frame.largest_apply_error()));
+    pieces.radii[s] = enlarged(offsets[s].radius * frame.growth() + spatial_error(placing_error_[s]));
   }
   pieces.near = snug::nearest(pieces.base[0], pieces.base[1]);
   const double gap = gap_of(pieces.near, pieces.radii[0], pieces.radii[1]);
@@ -75,7 +74,7 @@ void PiecePairs::set_points(PiecePair& pieces) const {
     pieces.points[s] = quadratic_point(pieces, s, pieces.at[s]);
     // The sum with the origin is rounded once, too.
     const double error = enlarged(frame.growth() * PieceCache::bounds_of(pieces.nodes[s]).error() +
-                                  2 * spatial_error(frame.largest_apply_error()));
+                                  2 * spatial_error(placing_error_[s]));
     pieces.error = std::max(pieces.error, error);
     errors += error;
   }
@@ -143,7 +142,7 @@ double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vecto
   const double placed = dot(w, origin - Point3{});
   // `there` is R' w itself, so what the rows lack of rigidity is in its length; its roundings are the second term.
   const double error = enlarged(frame.scale * (record.error_along(there) + 0x1p-47 * record.error())) +
-                       4 * frame.largest_apply_error() +
+                       4 * placing_error_[side] +
                        40 * unit_roundoff * (std::fabs(own) + max_abs(origin - Point3{})) +
                        8 * underflow_error;
   return placed + own + error;

@@ -41,7 +41,10 @@ struct Witness {
 /// points.
 class PiecePairs {
  public:
-  PiecePairs(PairFrames& frames, SearchStats& stats) : frames_(frames), stats_(stats) {}
+  PiecePairs(PairFrames& frames, SearchStats& stats)
+      : frames_(frames),
+        stats_(stats),
+        placing_error_{frames.frame(0).largest_apply_error(), frames.frame(1).largest_apply_error()} {}
 
   /// Where the base triangles of two pieces are nearest, with points of their quadratics there.
   /// Requires:  pair.bounded(), here and below.
@@ -86,6 +89,7 @@ class PiecePairs {
 
   PairFrames& frames_;
   SearchStats& stats_;
+  std::array<double, 2> placing_error_;        // a coordinate, of any point of a surface
   Vector3 along_;                              // of length 1, or zero
   std::array<std::uint64_t, 2> directions_{};  // its numbers in the caches
 };
