@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace snug::quadratic_test {
 namespace {
@@ -125,6 +126,148 @@ TEST(quadratic_triangle, is_as_near_as_it_says_for_disguised_meshes) {
       if (HasFailure()) return;
     }
   }
+}
+
+// A grid with a crease through it, of any sharpness: all of it shaken, or flat on one side and far from that beyond the crease.
+enum class Crease : std::uint8_t { straight, bent, chaikin, beside_a_plane };
+testing::TaggedCase creased_grid(oracle::PrimalScheme scheme, double sharpness, Crease sort,
+                                 std::uint64_t seed) {
+  const bool bend = sort == Crease::bent, chaikin = sort == Crease::chaikin;
+  constexpr std::uint32_t n = 5;
+  std::mt19937_64 random(seed);
+  oracle::TaggedMesh grid = oracle::meshes::quad_grid(n, n);
+  if (scheme == oracle::PrimalScheme::loop) grid = oracle::meshes::triangulated(grid);
+  oracle::TaggedMesh mesh = oracle::meshes::shaken(grid, sort == Crease::beside_a_plane ? 0 : 0.8, random);
+  if (sort == Crease::beside_a_plane) {
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) mesh.points[v][2] = v > 3 * n + 2 ? 1.0 : 0;
+  }
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t row = 2, at = row * (n + 1) + k;
+    if (bend && k >= 3) {
+      mesh.creases.push_back({(row + k - 3) * (n + 1) + 3, (row + k - 2) * (n + 1) + 3, sharpness});
+    } else {
+      mesh.creases.push_back({at, at + 1, chaikin ? sharpness + 0.3 * k : sharpness});
+    }
+  }
+  return {"sharpness " + std::to_string(sharpness) + (bend ? ", bent" : ""),
+          mesh,
+          {.scheme = scheme, .chaikin = chaikin}};
+}
+
+TEST(quadratic_triangle, is_as_near_as_it_says_beside_creases_of_any_sharpness) {
+  std::size_t samples = 0, on_lattices = 0, light = 0;
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    const auto library = std::make_shared<BoundsCache>();
+    std::uint64_t seed = 84;
+    for (const double sharpness : {0.3, 1.0, 1.6, 2.5, 4.0, 6.2}) {
+      for (const Crease sort : {Crease::straight, Crease::bent, Crease::chaikin, Crease::beside_a_plane}) {
+        const testing::TaggedCase c = creased_grid(scheme, sharpness, sort, ++seed);
+        samples += check(c, 4, library);
+        if (HasFailure()) return;
+        const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                                   library);
+        for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+          if (!surface.has_patch(PatchId(p))) continue;
+          const Kind& kind = *surface.patch(PatchId(p)).kind;
+          if (!kind.transient() || !has_quadratic_rows(kind)) continue;
+          const QuadraticRows& rows = library->quadratic_rows(kind);
+          on_lattices += !rows.layout().empty();
+          light +=
+              std::any_of(rows.largest().begin(), rows.largest().end(), [](double w) { return w < 0.02; });
+        }
+      }
+    }
+  }
+  EXPECT_GT(samples, 20'000u);
+  EXPECT_GT(on_lattices, 300u);
+  EXPECT_GT(light, 100u);
+}
+
+// A lattice with one control point off its plane: the patch is that point's basis function.
+TEST(quadratic_rows, bound_every_basis_function_of_a_lattice) {
+  std::size_t kinds = 0, light = 0;
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    const auto library = std::make_shared<BoundsCache>();
+    std::set<const Kind*> met;
+    for (const double sharpness : {0.3, 1.0, 1.6, 2.5, 4.0, 6.2}) {
+      const testing::TaggedCase c = creased_grid(scheme, sharpness, Crease::straight, 86);
+      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                                 library);
+      for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+        Patch patch = surface.patch(PatchId(p));
+        const Kind& kind = *patch.kind;
+        if (!kind.transient() || !met.insert(&kind).second) continue;
+        const QuadraticRows& rows = library->quadratic_rows(kind);
+        if (rows.layout().empty()) continue;
+        ++kinds;
+        patch.first = 0;
+        patch.origin = {};
+        patch.error = 0;
+        patch.largest = 4;
+        for (std::size_t i = 0; i < patch.points.size(); ++i) {
+          for (std::size_t k = 0; k < patch.points.size(); ++k) {
+            patch.points[k] = {rows.layout()[k][0], rows.layout()[k][1], k == i ? 1.0 : 0.0};
+          }
+          const std::array<Vector3, 6> plane{
+              {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}}};
+          const Apart bound = rows.distance(kind, patch, plane, {0, 0, 1});
+          double most = 0;
+          for (int v = 0; v <= 32; ++v) {
+            for (int u = 0; u + v <= 32; ++u) {
+              const Vector3 limit = limit_point(patch, {u / 32.0, v / 32.0}).from({}).position - Point3{};
+              EXPECT_NEAR(limit.x, u / 32.0, 1e-12);
+              EXPECT_NEAR(limit.y, v / 32.0, 1e-12);
+              most = std::max(most, std::fabs(limit.z));
+            }
+          }
+          EXPECT_GE(bound.along, most) << sharpness << ' ' << i;
+          EXPECT_GE(bound.any, most) << sharpness << ' ' << i;
+          EXPECT_LE(bound.any, 1 + 1e-9);
+          light += bound.any < 0.03 && most > 0.25 * bound.any;
+        }
+      }
+    }
+  }
+  EXPECT_GT(kinds, 20u);
+  EXPECT_GT(light, 20u);
+}
+
+// What is of use changes how far an error is followed, and no more.
+TEST(quadratic_triangle, is_as_near_as_it_says_for_who_asks_for_less) {
+  std::size_t finite = 0, useless = 0;
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    const testing::TaggedCase c = creased_grid(scheme, 2.6, Crease::bent, 85);
+    const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                               std::make_shared<BoundsCache>());
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (!surface.has_patch(PatchId(p))) continue;
+      Patch patch = surface.patch(PatchId(p));
+      for (unsigned level = 0; level < 3; ++level, patch = split(patch, (p + level) % 4)) {
+        const QuadraticTriangle known = quadratic_triangle(surface.library(), patch);
+        for (const double share : {0.1, 0.7, 1.2, 4.0}) {
+          const ErrorUse use{.sufficient = share * known.error / 4, .useless = share * known.error};
+          const QuadraticTriangle q = quadratic_triangle(surface.library(), patch, use);
+          if (share > 1.1) {
+            EXPECT_LT(q.error, INFINITY);
+          }
+          if (q.error == INFINITY) {
+            ++useless;
+            continue;
+          }
+          ++finite;
+          EXPECT_LE(q.error, use.useless * (1 + 1e-12));
+          for (int j = 0; j <= 6; ++j) {
+            for (int i = 0; i + j <= 6; ++i) {
+              const BoundedPoint limit = limit_point(patch, {i / 6.0, j / 6.0}).from(patch.origin);
+              EXPECT_TRUE(within_error(q, i / 6.0L, j / 6.0L, limit.position, limit.error));
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(finite, 200u);
+  EXPECT_GT(useless, 200u);
 }
 
 // Limit points ever closer to a corner, and pieces there: levels of nets are left at a tip.

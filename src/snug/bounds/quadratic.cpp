@@ -77,6 +77,10 @@ constexpr unsigned max_levels = 16;
 // How much nets may add before they are split.
 constexpr double notable_excess = 0.05;
 constexpr double corner_weight = 3;
+// Layouts whose limit points are farther from their parameters are no lattices.
+constexpr double max_lattice_error = 1e-12;
+// Points of a lattice with smaller basis functions are bounded one by one.
+constexpr double light_weight = 1.0 / 16;
 
 // Corners of the convex hull, up to rounding.
 std::vector<LayoutPoint> convex_hull(std::vector<LayoutPoint> points) {
@@ -191,12 +195,166 @@ void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
   for (double& largest : largest_) largest = enlarged(largest + deep.entry_error());
 }
 
+namespace {
+
+// Places of the control points as the regular lattice has them, from face to face; none where they do not fit.
+std::vector<LayoutPoint> lattice_layout(const Kind& kind) {
+  const Topology topology = neighbourhood(kind.key()).topology;
+  const std::size_t sides = topology.face(FaceId(0)).size();
+  if (sides != 3 && sides != 4) return {};
+  std::vector<LayoutPoint> layout(topology.vertex_count(), LayoutPoint{NAN, NAN});
+  const std::array<LayoutPoint, 4> own = sides == 3
+                                             ? std::array<LayoutPoint, 4>{{{0, 0}, {1, 0}, {0, 1}}}
+                                             : std::array<LayoutPoint, 4>{{{0, 0}, {1, 0}, {0, 1}, {-1, 1}}};
+  std::vector<bool> placed(topology.face_count());
+  std::vector<FaceId> open{FaceId(0)};
+  for (std::size_t k = 0; k < sides; ++k) layout[topology.face(FaceId(0))[k].index()] = own[k];
+  placed[0] = true;
+  bool fits = true;
+  const auto place = [&](VertexId v, const LayoutPoint& at) {
+    LayoutPoint& here = layout[v.index()];
+    if (std::isnan(here[0])) here = at;
+    fits = fits && here == at;
+  };
+  while (!open.empty() && fits) {
+    const FaceId face = open.back();
+    open.pop_back();
+    HalfEdge h = topology.first_of(face);
+    for (std::size_t k = 0; k < sides; ++k, h = topology.next(h)) {
+      const HalfEdge across = topology.twin(h);
+      if (across == no_half_edge || placed[topology.face_of(across).index()]) continue;
+      const FaceId beyond = topology.face_of(across);
+      if (topology.face(beyond).size() != sides) return {};
+      // Beyond an edge from p to q: a triangle turned by half a turn, or a square moved on.
+      const auto at = [&](HalfEdge of) { return layout[topology.from(of).index()]; };
+      const LayoutPoint p = at(h), q = at(topology.next(h)), r = at(topology.prev(h));
+      const HalfEdge next = topology.next(topology.next(across));
+      if (sides == 3) {
+        place(topology.from(next), {p[0] + q[0] - r[0], p[1] + q[1] - r[1]});
+      } else {
+        const LayoutPoint s = at(topology.next(topology.next(h)));
+        place(topology.from(next), {2 * p[0] - r[0], 2 * p[1] - r[1]});
+        place(topology.from(topology.next(next)), {2 * q[0] - s[0], 2 * q[1] - s[1]});
+      }
+      placed[beyond.index()] = true;
+      open.push_back(beyond);
+    }
+  }
+  const auto set = [](const LayoutPoint& at) { return !std::isnan(at[0]); };
+  fits = fits && layout.size() == kind.control_count() && std::all_of(layout.begin(), layout.end(), set);
+  return fits ? layout : std::vector<LayoutPoint>{};
+}
+
+}  // namespace
+
+// A lattice lasts where a step makes of it lattices again, each in its place, and points of polynomial pieces at their
+// parameters: then its limit points are at their parameters, up to what all levels err by.
+void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
+  const BoundingRows& rows = library.level_rows(kind);
+  const std::vector<LayoutPoint> layout = lattice_layout(kind);
+  if (layout.empty()) return;
+  const auto image = [&](std::size_t r) {
+    LayoutPoint at{0, 0};
+    for (std::size_t c = 0; c < layout.size(); ++c) {
+      for (std::size_t a = 0; a < 2; ++a) at[a] += rows.weight(r, c) * layout[c][a];
+    }
+    return at;
+  };
+  double size = 1, error = 0;
+  for (const LayoutPoint& at : layout) size = std::max({size, std::fabs(at[0]), std::fabs(at[1])});
+  const auto expect = [&](const LayoutPoint& at, double u, double v) {
+    const double off = std::max(std::fabs(at[0] - u), std::fabs(at[1] - v));
+    error = off <= error ? error : off;  // what is not a number is kept
+  };
+  for (std::size_t r = 0; r < rows.bezier_count(); ++r) {
+    expect(image(r), rows.quadratic(1)[r] + 0.5 * (rows.quadratic(3)[r] + rows.quadratic(4)[r]),
+           rows.quadratic(2)[r] + 0.5 * (rows.quadratic(4)[r] + rows.quadratic(5)[r]));
+  }
+  std::vector<double> largest(layout.size(), 0.0);
+  const auto raise = [&](std::size_t c, double weight) { largest[c] = std::max(largest[c], weight); };
+  for (std::size_t c = 0; c < layout.size(); ++c) {
+    for (std::size_t r = 0; r < rows.bezier_count(); ++r) raise(c, std::fabs(rows.weight(r, c)));
+  }
+  double below = 0;
+  for (const BoundingRows::Net& net : rows.nets()) {
+    if (!net.kind->transient() || !has_quadratic_rows(*net.kind)) return;
+    const QuadraticRows& piece = library.quadratic_rows(*net.kind);
+    if (!piece.lattice_) return;
+    below = std::max(below, piece.offset_error_);
+    for (std::size_t i = 0; i < piece.layout_.size(); ++i) {
+      const auto [x, y] = piece.layout_[i];
+      const auto place = [&](std::size_t k) {
+        return (1 - x - y) * net.place[0][k] + x * net.place[1][k] + y * net.place[2][k];
+      };
+      expect(image(net.begin + i), place(1), place(2));
+    }
+    for (std::size_t c = 0; c < layout.size(); ++c) {
+      double most = 0, sum = 0;
+      for (std::size_t i = 0; i < piece.layout_.size(); ++i) {
+        const double weight = std::fabs(rows.weight(net.begin + i, c));
+        most = std::max(most, weight);
+        sum += weight * piece.largest_[i];
+      }
+      raise(c, std::min(most, sum));
+    }
+  }
+  const double all = enlarged(error + rows.result_error(size, 0) + gamma_bound(32) * size + below);
+  if (!(all < max_lattice_error)) return;
+  layout_ = layout;
+  offset_error_ = all;
+  lattice_ = true;
+  largest_ = std::move(largest);
+  for (double& weight : largest_) weight = enlarged(weight + rows.entry_error());
+}
+
+// With l the affine map of parameters to the quadratic's corners and d_i = c_i - l(layout_i), patch - q = sum d_i N_i + (l - q): a
+// convex combination of d_i and another one.
+// Points beyond a sharp crease are far off l, and weigh little: without them combinations of the others and of zero.
+Apart QuadraticRows::distance_on_lattice(const Patch& patch, const Quadratic& q,
+                                         const Vector3& normal) const {
+  const Vector3 along_u = q[1] - q[0], along_v = q[2] - q[0];
+  const double size = std::max(patch.largest, largest_of(q));
+  // Bezier points of l less q; those at corners are zero.
+  std::array<Vector3, 4> linear;
+  for (std::size_t k = 0; k < 3; ++k) linear[k] = 0.5 * (q[k] + q[(k + 1) % 3]) - q[3 + k];
+  struct Most {
+    double sq = 0, along = 0;
+    void add(const Vector3& v, const Vector3& n) { add({length_sq(v), std::fabs(dot(n, v))}); }
+    void add(const Most& other) {
+      sq = std::max(sq, other.sq);
+      along = std::max(along, other.along);
+    }
+  } all, heavy;
+  Apart light;
+  double reach = 1;
+  for (const Vector3& b : linear) heavy.add(b, normal);
+  for (std::size_t i = 0; i < layout_.size(); ++i) {
+    const auto [u, v] = layout_[i];
+    const Vector3 off = patch.points[i] - (q[0] + u * along_u + v * along_v);
+    reach = std::max(reach, 1 + std::fabs(u) + std::fabs(v));
+    Most here;
+    for (const Vector3& b : linear) here.add(off + b, normal);
+    all.add(here);
+    if (largest_[i] > light_weight) {
+      heavy.add(here);
+    } else {
+      light.any += largest_[i] * length(off);
+      light.along += largest_[i] * std::fabs(dot(normal, off));
+    }
+  }
+  const double doubt = spatial_error(2 * reach * (patch.error + 16 * unit_roundoff * size)) +
+                       8 * (offset_error_ + 64 * unit_roundoff) * size + tiny;
+  return {enlarged(std::min(std::sqrt(all.sq), std::sqrt(heavy.sq) + light.any) + doubt),
+          enlarged(std::min(all.along, heavy.along + light.along) + doubt)};
+}
+
 // Of the layout's image under the affine map l that takes its limit corners to those of the patch, as
 // computed: patch - l = sum d_i N_i with d_i = c_i - l(layout_i), and l less the quadratic is what the layout
 // is off the parameters, and a quadratic.
 Apart QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadratic& q,
                               const Vector3& normal) const {
   if (layout_.empty()) return {INFINITY, INFINITY};
+  if (lattice_) return distance_on_lattice(patch, q, normal);
   std::array<Vector3, 3> corner;
   for (std::size_t k = 0; k < 3; ++k) corner[k] = kind.corner_limits().apply<Vector3>(k, patch.points);
   const Vector3 along_u = corner[1] - corner[0], along_v = corner[2] - corner[0];
@@ -232,8 +390,15 @@ Apart QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadra
 }
 
 QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind) {
-  SNUG_EXPECT(kind.cacheable());
+  SNUG_EXPECT(has_quadratic_rows(kind));
   QuadraticRows result;
+  if (kind.transient()) {
+    for (const BoundingRows::Net& net : library.level_rows(kind).nets()) {
+      result.to_level_nets_.push_back(restriction_to(net.place));
+    }
+    result.make_lattice(library, kind);
+    return result;
+  }
   if (kind.polynomial()) {
     result.make_fit(library.rows(kind));
     return result;
@@ -257,10 +422,12 @@ class Comparison {
  public:
   // Of a patch in its kind's order, and its bounding points.
   [[nodiscard]] Apart distance(BoundsCache& library, const Patch& patch, const Quadratic& q,
-                               const Vector3& normal, const BoundingPoints& hull) {
+                               const Vector3& normal, const BoundingPoints& hull, const ErrorUse& use) {
     library_ = &library;
     normal_ = normal;
+    use_ = use;
     opened_ = 0;
+    pending_.clear();
     farthest_ = {};
     const Kind& kind = *patch.kind;
     if (!kind.cacheable() || (kind.polynomial() && kind.form().degree == 1)) {
@@ -272,6 +439,7 @@ class Comparison {
     SNUG_EXPECT(hull.size() == hull.tips_end() + (tips > 0 ? rows.bezier_count() : rows.count()));
     const double size = std::max(hull.largest, largest_of(q));
     compare(hull.coordinates().from(hull.tips_end()), hull.error, rows, q, size, 0);
+    if (useless()) return {INFINITY, INFINITY};
     const std::vector<Restriction>& to_nets = library.quadratic_rows(kind).to_nets();
     for (std::size_t i = 0; i < to_nets.size(); ++i) {
       Open& open = next_open();
@@ -291,6 +459,7 @@ class Comparison {
   // than `size`.
   void compare(const kernels::Coordinates& points, double error, const BoundingRows& rows, const Quadratic& q,
                double size, double given) {
+    if (rows.bezier_count() == 0) return;
     take(kernels::farthest_from_quadratic(points.first(rows.bezier_count()), rows.quadratic(0), q, normal_),
          error + given + gamma_bound(32) * size);
   }
@@ -298,13 +467,13 @@ class Comparison {
   // A piece in its kind's order.
   void add(const Patch& piece, const Quadratic& q, double given, unsigned level) {
     const Kind& kind = *piece.kind;
-    if (!kind.cacheable()) return add_parts(piece, q, given, level);
+    if (!has_quadratic_rows(kind)) return add_parts(piece, q, given, level);
     if (kind.polynomial() && kind.form().degree == 1) return add_plane(piece, q, given);
     const BoundingRows& rows = library_->level_rows(kind);
     bounding_points(rows, piece, points_);
     const double size = std::max(points_.largest, largest_of(q));
     compare(points_.coordinates(), points_.error, rows, q, size, given);
-    if (rows.nets().empty()) return;
+    if (rows.nets().empty() || useless()) return;
     const std::vector<Restriction>& to_nets = library_->quadratic_rows(kind).to_level_nets();
     for (std::size_t i = 0; i < to_nets.size(); ++i) {
       Open& open = next_open();
@@ -314,22 +483,31 @@ class Comparison {
     }
   }
 
-  // Splits nets while they add notably to the largest distance, whatever its direction.
+  [[nodiscard]] bool useless() const { return farthest_.any > use_.useless; }
+  // Splits nets while they add notably to the largest distance, whatever its direction, and that is of use.
   [[nodiscard]] Apart resolve() {
+    // The latest first: where an error is useless that shows on small pieces.
     Apart rest;
-    for (std::size_t next = 0; next < opened_; ++next) {
-      Open& open = *open_[next];
+    for (std::size_t i = 0; i < opened_; ++i) pending_.push_back(i);
+    while (!pending_.empty() && !useless()) {
+      Open& open = *open_[pending_.back()];
+      pending_.pop_back();
       const Kind& kind = *open.piece.kind;
       const unsigned limit = kind.cacheable()   ? max_levels
                              : kind.transient() ? transient_split_levels
                                                 : high_valence_split_levels;
-      if (open.distance.any <= (1 + notable_excess) * farthest_.any || open.level >= limit) {
+      const double enough = std::max(use_.sufficient, (1 + notable_excess) * farthest_.any);
+      if (open.distance.any <= enough || open.level >= limit) {
         rest.add(open.distance);
+        if (rest.any > use_.useless) break;
       } else {
+        const std::size_t before = opened_;
         add(open.piece, open.quadratic, open.given, open.level);
+        for (std::size_t i = before; i < opened_; ++i) pending_.push_back(i);
       }
     }
     rest.add(farthest_);
+    if (rest.any > use_.useless) return {INFINITY, INFINITY};
     return rest;
   }
   struct Open {
@@ -348,7 +526,7 @@ class Comparison {
     open.given = given;
     open.level = level;
     Apart apart{INFINITY, INFINITY};
-    if (kind.cacheable()) {
+    if (has_quadratic_rows(kind)) {
       apart = library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic, normal_);
     }
     if (apart.any == INFINITY) apart = by_hulls(open.piece, open.quadratic, normal_);
@@ -401,7 +579,9 @@ class Comparison {
   BoundingPoints points_;
   std::vector<std::unique_ptr<Open>> open_;  // as many as there ever were
   std::size_t opened_ = 0;
+  std::vector<std::size_t> pending_;
   Vector3 normal_;
+  ErrorUse use_;
   Apart farthest_;
 };
 
@@ -431,16 +611,16 @@ struct Fit {
 };
 
 Apart distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q, const Vector3& normal,
-                  const BoundingPoints& hull) {
+                  const BoundingPoints& hull, const ErrorUse& use) {
   thread_local Comparison comparison;
   thread_local Patch whole;
   whole = patch;
   whole.first = 0;
   whole.path = {};
-  return comparison.distance(library, whole, q, normal, hull);
+  return comparison.distance(library, whole, q, normal, hull, use);
 }
 
-Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull) {
+Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull, const ErrorUse& use) {
   Fit fit;
   const Kind& kind = *patch.kind;
   if (!kind.cacheable()) {
@@ -458,14 +638,15 @@ Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull)
   }
   const Quadratic& q = fit.quadratic;
   fit.normal = normalized(cross(q[1] - q[0], q[2] - q[0]));
-  fit.apart = distance_to(library, patch, q, fit.normal, hull);
+  fit.apart = distance_to(library, patch, q, fit.normal, hull, use);
   return fit;
 }
 
 }  // namespace
 
-QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const BoundingPoints& hull) {
-  const auto [quadratic, normal, apart] = fit_of(library, patch, hull);
+QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const BoundingPoints& hull,
+                                     const ErrorUse& use) {
+  const auto [quadratic, normal, apart] = fit_of(library, patch, hull, use);
   QuadraticTriangle result;
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -489,14 +670,14 @@ QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, c
   return result;
 }
 
-QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch) {
+QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const ErrorUse& use) {
   thread_local BoundingPoints hull;
   if (patch.kind->cacheable()) bounding_points(library, patch, hull);
-  return quadratic_triangle(library, patch, hull);
+  return quadratic_triangle(library, patch, hull, use);
 }
 
 double distance_to_triangle(BoundsCache& library, const Patch& patch, const BoundingPoints& hull,
-                            const Triangle& triangle) {
+                            const Triangle& triangle, const ErrorUse& use) {
   Quadratic flat;
   for (std::size_t k = 0; k < 3; ++k) flat[patch.to_kind(k)] = triangle[k] - patch.origin;
   for (std::size_t k = 0; k < 3; ++k) flat[3 + k] = 0.5 * (flat[k] + flat[(k + 1) % 3]);
@@ -505,7 +686,7 @@ double distance_to_triangle(BoundsCache& library, const Patch& patch, const Boun
       std::all_of(patch.points.begin(), patch.points.end(), [](const Vector3& p) { return is_finite(p); }) &&
       largest < INFINITY;
   if (!finite) return INFINITY;
-  const double distance = distance_to(library, patch, flat, {}, hull).any;
+  const double distance = distance_to(library, patch, flat, {}, hull, use).any;
   return enlarged(distance + spatial_error(2 * unit_roundoff * largest));
 }
 

@@ -25,6 +25,14 @@ struct QuadraticTriangle {
   double normal_error = 0;  ///< |dot(normal, patch(t) - quadratic(t))| <= normal_error for all t
 };
 
+/// What a caller makes of an error: one of at most `sufficient` need not be less, and one above `useless` may as well be infinite.
+struct ErrorUse {
+  double sufficient = 0, useless = INFINITY;
+};
+
+/// Are a kind's pieces compared with quadratics by rows? Others are split.
+[[nodiscard]] inline bool has_quadratic_rows(const Kind& kind) { return !kind.high_valence(); }
+
 /// Rows that make and bound the quadratic triangles of a kind. Immutable.
 ///
 /// Guarantee: whatever the fit is, errors are proved for the quadratics that came out.
@@ -47,8 +55,8 @@ class QuadraticRows {
   [[nodiscard]] const std::vector<double>& largest() const { return largest_; }
   [[nodiscard]] std::size_t bytes() const;
 
-  /// How far a patch and a quadratic in the kind's order are apart, and along `normal`; infinite unless the kind comes
-  /// again at a corner.
+  /// How far a patch and a quadratic in the kind's order are apart, and along `normal`; infinite unless the kind has a
+  /// layout: it comes again at a corner, or its lattice stays a lattice.
   [[nodiscard]] Apart distance(const Kind& kind, const Patch& patch, const std::array<Vector3, 6>& quadratic,
                                const Vector3& normal) const;
 
@@ -56,6 +64,9 @@ class QuadraticRows {
   friend QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
   void make_fit(const BoundingRows& deep);
   void make_frame(const Kind& kind, const BoundingRows& deep);
+  void make_lattice(BoundsCache& library, const Kind& kind);
+  [[nodiscard]] Apart distance_on_lattice(const Patch& patch, const std::array<Vector3, 6>& q,
+                                          const Vector3& normal) const;
 
   std::vector<Restriction> to_nets_, to_level_nets_;
   std::vector<double> fit_;  // 6 x controls, column by column
@@ -65,28 +76,33 @@ class QuadraticRows {
   std::vector<LayoutPoint> layout_, offsets_;
   double offset_error_ = 0;
   std::vector<double> largest_;
+  bool lattice_ = false;  // limit points of the places are the parameters themselves, up to the error
 };
 
-/// Requires:  a patch, no polygon, that is cacheable().
+/// Of a transient kind those of a level alone, and no fit.
+/// Requires:  a patch, no polygon, with has_quadratic_rows().
 /// Cost:      0.1 to 1 ms up to valence 12.
 [[nodiscard]] QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
 
 /// The quadratic triangle of a patch, least squares over Bezier points, with its error.
 ///
-/// Guarantee: both errors, rounding and the patch's own error included.
-/// Requires:  hull: of bounding_points() for this patch, no tip of it refined.
+/// Guarantee: both errors, rounding and the patch's own error included. Both are infinite where the error shows to be above
+///            use.useless.
+/// Requires:  hull: of bounding_points() for this patch, no tip of it refined; none is needed unless kind->cacheable().
 /// Tightness: in the median 1.3 times the largest distance over all parameters.
 /// Cost:      given the hull about 0.1 microseconds; with extraordinary corners 0.3 each, and one product a
 ///            level that is refined.
 [[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch,
-                                                   const BoundingPoints& hull);
+                                                   const BoundingPoints& hull, const ErrorUse& use = {});
 /// The same without a hull at hand.
-[[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch);
+[[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch,
+                                                   const ErrorUse& use = {});
 
 /// Upper bound of |patch(t) - l(t)| over all t, for the linear map l of the patch's parameters to this triangle,
 /// corner to corner; infinite if not finite. Rounding and the patch's own error included.
 /// Requires, Cost: those of quadratic_triangle(); no hull is needed unless kind->cacheable().
 [[nodiscard]] double distance_to_triangle(BoundsCache& library, const Patch& patch,
-                                          const BoundingPoints& hull, const Triangle& triangle);
+                                          const BoundingPoints& hull, const Triangle& triangle,
+                                          const ErrorUse& use = {});
 
 }  // namespace snug

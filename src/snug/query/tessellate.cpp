@@ -29,6 +29,8 @@ using Index = TriangleComplex::Index;
 constexpr double min_tolerance = 0x1p-41, min_single_tolerance = 0x1p-21;
 // The error of a piece's quadratic that is no hindrance, as a part of the tolerance.
 constexpr double tolerable_share = 0.25;
+// One of less need not be known better.
+constexpr double sufficient_share = 0x1p-4;
 constexpr unsigned deepest_level = 40;
 constexpr double shortest_side = 0x1p-46;  // in parameters
 // Whatever the budget is: edges, also those that were split, have 31 bits.
@@ -130,6 +132,8 @@ class MeshRefinement {
 
   // Refines until all limits hold; false if that would take more than `most` triangles.
   bool run(std::uint64_t most);
+  // After a run that was ended: of triangles whose errors are known to be too large, and no more.
+  void find_errors();
   [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
   // Upper bound over all triangles, in mesh units.
   [[nodiscard]] double error_bound() const;
@@ -185,6 +189,7 @@ class MeshRefinement {
   std::vector<double> error_;
   std::vector<Tile> pieces_;
   std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
+  bool errors_whole_ = false;  // also those above the tolerance
   std::atomic<bool> stuck_{false};
 };
 
@@ -284,17 +289,23 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   BoundsCache& library = surface_.library();
   if (patch.kind->cacheable() || limits_.max_thickness < INFINITY)
     bounding_points(library, patch, worker.hull);
-  const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
+  const double most = tolerable_share * tolerance(t);
+  const bool whole = errors_whole_ || !(most < INFINITY) || piece.path.level() >= deepest_level;
+  const ErrorUse use =
+      whole ? ErrorUse{} : ErrorUse{.sufficient = sufficient_share * tolerance(t), .useless = most};
+  const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull, use);
   piece.known = true;
   if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
-  piece.coarse = piece.thick || !(near.error <= tolerable_share * tolerance(t)) || !(near.error < INFINITY);
+  piece.coarse = piece.thick || !(near.error <= most) || !(near.error < INFINITY);
   if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.path);
   if (!piece.coarse) return;
   const FlatTriangle triangle = flat(t);
   if (near.error < INFINITY) error_[t] = piece.quadratic.flatness(triangle).error;
   // Where the quadratic itself is too far away there is nothing to be gained.
   if (error_[t] > tolerance(t) && !(error_[t] - 2 * near.error > tolerance(t))) {
-    error_[t] = std::min(error_[t], distance_to_triangle(library, patch, worker.hull, triangle.corner));
+    const ErrorUse use_here = whole ? ErrorUse{} : ErrorUse{.useless = tolerance(t)};
+    error_[t] =
+        std::min(error_[t], distance_to_triangle(library, patch, worker.hull, triangle.corner, use_here));
   }
 }
 
@@ -532,6 +543,18 @@ bool MeshRefinement::run(std::uint64_t most) {
   }
 }
 
+void MeshRefinement::find_errors() {
+  errors_whole_ = true;
+  parallel_for_with(
+      triangle_count(), run_.threads, [&] { return Worker(surface_); },
+      [&](Worker& worker, std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+          if (t % 256 == 0) monitor_.checkpoint();
+          if (!(error_[t] < INFINITY)) learn(worker, static_cast<Index>(t));
+        }
+      });
+}
+
 double MeshRefinement::error_bound() const {
   double largest = 0;
   for (const double error : error_) largest = std::max(largest, error);
@@ -755,6 +778,7 @@ Tessellation tessellate(const Surface& handle, const TessellateOptions& options,
   if (options.max_triangles) return CountSearch(surface, options, limits, run).run();
   MeshRefinement refinement(surface, options, limits, run);
   const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
+  if (!reached) refinement.find_errors();
   Tessellation result = refinement.result();
   result.outcome = outcome_of(reached, true);
   return result;
@@ -770,6 +794,7 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   limits.tolerance = *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
   MeshRefinement refinement(surface, options, limits, run);
   const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
+  if (!reached) refinement.find_errors();
   LocalTessellation result;
   result.mesh = refinement.result(&result.errors);
   result.mesh.outcome = outcome_of(reached, true);

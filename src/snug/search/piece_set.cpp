@@ -53,9 +53,11 @@ template <class Add>
 void split_to(double error, const LimitSurface& surface, PatchId root, const Patch& patch, Count& count,
               const Add& add) {
   if (count.too_many()) return;
-  const QuadraticTriangle quadratic = quadratic_triangle(surface.library(), patch);
-  if (quadratic.error <= error || quadratic.error <= min_error ||
-      patch.path.level() >= PiecePath::max_level) {
+  const bool last = patch.path.level() >= PiecePath::max_level;
+  const double enough = std::max(error, min_error);
+  const QuadraticTriangle quadratic = quadratic_triangle(
+      surface.library(), patch, {.sufficient = enough / 4, .useless = last ? INFINITY : enough});
+  if (quadratic.error <= enough || last) {
     count.add();
     return add(quadratic, PieceName{root, patch.path});
   }
