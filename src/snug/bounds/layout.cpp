@@ -1,6 +1,7 @@
 #include <snug/bounds/layout.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 
@@ -147,6 +148,53 @@ std::vector<LayoutPoint> blended_layout(const Kind& kind, const Topology& topolo
 }
 
 }  // namespace
+
+std::vector<LayoutPoint> lattice_layout(const Kind& kind) {
+  const Topology topology = neighbourhood(kind.key()).topology;
+  const std::size_t sides = topology.face(FaceId(0)).size();
+  if (sides != 3 && sides != 4) return {};
+  std::vector<LayoutPoint> layout(topology.vertex_count(), LayoutPoint{NAN, NAN});
+  const std::array<LayoutPoint, 4> own = sides == 3
+                                             ? std::array<LayoutPoint, 4>{{{0, 0}, {1, 0}, {0, 1}}}
+                                             : std::array<LayoutPoint, 4>{{{0, 0}, {1, 0}, {0, 1}, {-1, 1}}};
+  std::vector<bool> placed(topology.face_count());
+  std::vector<FaceId> open{FaceId(0)};
+  for (std::size_t k = 0; k < sides; ++k) layout[topology.face(FaceId(0))[k].index()] = own[k];
+  placed[0] = true;
+  bool fits = true;
+  const auto place = [&](VertexId v, const LayoutPoint& at) {
+    LayoutPoint& here = layout[v.index()];
+    if (std::isnan(here[0])) here = at;
+    fits = fits && here == at;
+  };
+  while (!open.empty() && fits) {
+    const FaceId face = open.back();
+    open.pop_back();
+    HalfEdge h = topology.first_of(face);
+    for (std::size_t k = 0; k < sides; ++k, h = topology.next(h)) {
+      const HalfEdge across = topology.twin(h);
+      if (across == no_half_edge || placed[topology.face_of(across).index()]) continue;
+      const FaceId beyond = topology.face_of(across);
+      if (topology.face(beyond).size() != sides) return {};
+      // Beyond an edge from p to q: a triangle turned by half a turn, or a square moved on.
+      const auto at = [&](HalfEdge of) { return layout[topology.from(of).index()]; };
+      const LayoutPoint p = at(h), q = at(topology.next(h)), r = at(topology.prev(h));
+      const HalfEdge next = topology.next(topology.next(across));
+      if (sides == 3) {
+        place(topology.from(next), {p[0] + q[0] - r[0], p[1] + q[1] - r[1]});
+      } else {
+        const LayoutPoint s = at(topology.next(topology.next(h)));
+        place(topology.from(next), {2 * p[0] - r[0], 2 * p[1] - r[1]});
+        place(topology.from(topology.next(next)), {2 * q[0] - s[0], 2 * q[1] - s[1]});
+      }
+      placed[beyond.index()] = true;
+      open.push_back(beyond);
+    }
+  }
+  const auto set = [](const LayoutPoint& at) { return !std::isnan(at[0]); };
+  fits = fits && layout.size() == kind.control_count() && std::all_of(layout.begin(), layout.end(), set);
+  return fits ? layout : std::vector<LayoutPoint>{};
+}
 
 double outer_spoke(std::size_t n) {
   SNUG_EXPECT(n >= 3);

@@ -27,6 +27,10 @@ using LayoutPoint = std::array<double, 2>;
 /// Source:    [Wu05, sec. 4.3]; derivations/tables.md.
 [[nodiscard]] std::vector<LayoutPoint> make_layout(const Kind& kind);
 
+/// Where the control points lie if the faces around the patch are triangles or quads of the regular lattice, none tagged as it
+/// may be; empty if they are not. Exact.
+[[nodiscard]] std::vector<LayoutPoint> lattice_layout(const Kind& kind);
+
 /// A layout for any kind of patch: the control net that is nearest to both of these. Its limit patch is its
 /// own parametrisation, and it is fair: each face around the patch an affine image of a regular polygon, each
 /// fan at its vertices one of a regular fan. Corners of the limit patch lie at (0, 0), (1, 0) and (0, 1).

@@ -11,6 +11,7 @@
 #include <snug/patch/evaluate.h>
 #include <support/contract.h>
 #include <support/direction.h>
+#include <support/ordering.h>
 
 namespace snug {
 namespace {
@@ -194,58 +195,6 @@ void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
   offset_error_ = error;
   for (double& largest : largest_) largest = enlarged(largest + deep.entry_error());
 }
-
-namespace {
-
-// Places of the control points as the regular lattice has them, from face to face; none where they do not fit.
-std::vector<LayoutPoint> lattice_layout(const Kind& kind) {
-  const Topology topology = neighbourhood(kind.key()).topology;
-  const std::size_t sides = topology.face(FaceId(0)).size();
-  if (sides != 3 && sides != 4) return {};
-  std::vector<LayoutPoint> layout(topology.vertex_count(), LayoutPoint{NAN, NAN});
-  const std::array<LayoutPoint, 4> own = sides == 3
-                                             ? std::array<LayoutPoint, 4>{{{0, 0}, {1, 0}, {0, 1}}}
-                                             : std::array<LayoutPoint, 4>{{{0, 0}, {1, 0}, {0, 1}, {-1, 1}}};
-  std::vector<bool> placed(topology.face_count());
-  std::vector<FaceId> open{FaceId(0)};
-  for (std::size_t k = 0; k < sides; ++k) layout[topology.face(FaceId(0))[k].index()] = own[k];
-  placed[0] = true;
-  bool fits = true;
-  const auto place = [&](VertexId v, const LayoutPoint& at) {
-    LayoutPoint& here = layout[v.index()];
-    if (std::isnan(here[0])) here = at;
-    fits = fits && here == at;
-  };
-  while (!open.empty() && fits) {
-    const FaceId face = open.back();
-    open.pop_back();
-    HalfEdge h = topology.first_of(face);
-    for (std::size_t k = 0; k < sides; ++k, h = topology.next(h)) {
-      const HalfEdge across = topology.twin(h);
-      if (across == no_half_edge || placed[topology.face_of(across).index()]) continue;
-      const FaceId beyond = topology.face_of(across);
-      if (topology.face(beyond).size() != sides) return {};
-      // Beyond an edge from p to q: a triangle turned by half a turn, or a square moved on.
-      const auto at = [&](HalfEdge of) { return layout[topology.from(of).index()]; };
-      const LayoutPoint p = at(h), q = at(topology.next(h)), r = at(topology.prev(h));
-      const HalfEdge next = topology.next(topology.next(across));
-      if (sides == 3) {
-        place(topology.from(next), {p[0] + q[0] - r[0], p[1] + q[1] - r[1]});
-      } else {
-        const LayoutPoint s = at(topology.next(topology.next(h)));
-        place(topology.from(next), {2 * p[0] - r[0], 2 * p[1] - r[1]});
-        place(topology.from(topology.next(next)), {2 * q[0] - s[0], 2 * q[1] - s[1]});
-      }
-      placed[beyond.index()] = true;
-      open.push_back(beyond);
-    }
-  }
-  const auto set = [](const LayoutPoint& at) { return !std::isnan(at[0]); };
-  fits = fits && layout.size() == kind.control_count() && std::all_of(layout.begin(), layout.end(), set);
-  return fits ? layout : std::vector<LayoutPoint>{};
-}
-
-}  // namespace
 
 // A lattice lasts where a step makes of it lattices again, each in its place, and points of polynomial pieces at their
 // parameters: then its limit points are at their parameters, up to what all levels err by.
@@ -486,24 +435,32 @@ class Comparison {
   [[nodiscard]] bool useless() const { return farthest_.any > use_.useless; }
   // Splits nets while they add notably to the largest distance, whatever its direction, and that is of use.
   [[nodiscard]] Apart resolve() {
-    // The latest first: where an error is useless that shows on small pieces.
+    // The largest first: once that one adds little, none adds more.
+    const auto smaller = [&](std::size_t x, std::size_t y) {
+      return open_[x]->distance.any < open_[y]->distance.any;
+    };
     Apart rest;
-    for (std::size_t i = 0; i < opened_; ++i) pending_.push_back(i);
-    while (!pending_.empty() && !useless()) {
-      Open& open = *open_[pending_.back()];
+    std::size_t known = 0;
+    while (!useless()) {
+      for (; known < opened_; ++known) {
+        pending_.push_back(known);
+        ordering::push_heap(pending_.data(), pending_.size(), smaller);
+      }
+      if (pending_.empty()) break;
+      ordering::pop_heap(pending_.data(), pending_.size(), smaller);
+      const Open& open = *open_[pending_.back()];
       pending_.pop_back();
       const Kind& kind = *open.piece.kind;
       const unsigned limit = kind.cacheable()   ? max_levels
                              : kind.transient() ? transient_split_levels
                                                 : high_valence_split_levels;
-      const double enough = std::max(use_.sufficient, (1 + notable_excess) * farthest_.any);
-      if (open.distance.any <= enough || open.level >= limit) {
+      const bool enough =
+          open.distance.any <= std::max(use_.sufficient, (1 + notable_excess) * farthest_.any);
+      if (enough || open.level >= limit) {
         rest.add(open.distance);
         if (rest.any > use_.useless) break;
       } else {
-        const std::size_t before = opened_;
         add(open.piece, open.quadratic, open.given, open.level);
-        for (std::size_t i = before; i < opened_; ++i) pending_.push_back(i);
       }
     }
     rest.add(farthest_);

@@ -42,12 +42,17 @@ class Inspector {
  public:
   explicit Inspector(const ControlMesh& mesh) : mesh_(mesh) {}
 
-  std::vector<Defect> run(bool with_neighbours) {
+  // With the topology where that is manifold: neighbours need no look then.
+  std::vector<Defect> run(const Topology* manifold) {
     const bool indices_good = check_faces();
     check_points();
     check_tags();
-    if (indices_good) check_duplicates();
-    if (indices_good && with_neighbours) {
+    if (manifold != nullptr && manifold->uniform_size() == 3) {
+      check_twice_covered(*manifold);
+    } else if (indices_good) {
+      check_duplicates();
+    }
+    if (indices_good && manifold == nullptr) {
       check_edges_and_fans();
       check_areas();
     }
@@ -125,6 +130,20 @@ class Inspector {
     }
   }
 
+  void add_duplicate(std::size_t later, std::size_t first) {
+    add(DefectKind::duplicate_face,
+        "face " + number(later) + " has the same vertices as face " + number(first));
+  }
+
+  // Triangles with the same vertices share their edges, which have no others.
+  void check_twice_covered(const Topology& topology) {
+    for (HalfEdge h = 0; h < topology.half_edge_count(); h += 3) {
+      const HalfEdge a = topology.twin(h), b = topology.twin(h + 1), c = topology.twin(h + 2);
+      if (a == no_half_edge || b == no_half_edge || c == no_half_edge) continue;
+      if (a / 3 == b / 3 && b / 3 == c / 3 && a < h) add_duplicate(h / 3, a / 3);
+    }
+  }
+
   void check_duplicates() {
     // Faces by their lowest vertex, then by a hash of all, in whatever order: candidates follow each other.
     struct Entry {
@@ -171,10 +190,7 @@ class Inspector {
       }
     }
     std::sort(pairs.begin(), pairs.end());
-    for (const auto& [later, first] : pairs) {
-      add(DefectKind::duplicate_face,
-          "face " + number(later) + " has the same vertices as face " + number(first));
-    }
+    for (const auto& [later, first] : pairs) add_duplicate(later, first);
   }
 
   // The corners of faces around a vertex, linked where two faces share an edge at it, are one chain or cycle.
@@ -257,9 +273,11 @@ class Inspector {
 
 const char* name_of(DefectKind kind) { return name_in(defect_kind_names, kind); }
 
-std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(true); }
+std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(nullptr); }
 
-std::vector<Defect> defects_of_elements(const ControlMesh& mesh) { return Inspector(mesh).run(false); }
+std::vector<Defect> defects_of_elements(const ControlMesh& mesh, const Topology& manifold) {
+  return Inspector(mesh).run(&manifold);
+}
 
 std::string summary(const std::vector<Defect>& list) {
   return first_ten(std::span(list), "; ", "; and ", [](const Defect& defect) { return defect.text; });

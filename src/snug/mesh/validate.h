@@ -5,6 +5,7 @@
 
 #include <snug/inspect.h>
 #include <snug/mesh/control_mesh.h>
+#include <snug/mesh/topology.h>
 
 namespace snug {
 
@@ -21,9 +22,9 @@ namespace snug {
 }
 
 /// Those of defects() that show without looking at neighbours: of faces each on its own, of duplicate faces,
-/// points and tags. All but legal ones, where the mesh's topology is manifold.
-/// Requires:  faces of three vertices or more, in range.
-[[nodiscard]] std::vector<Defect> defects_of_elements(const ControlMesh& mesh);
+/// points and tags. All but legal ones.
+/// Requires:  faces of three vertices or more, in range; the mesh's topology, which is manifold.
+[[nodiscard]] std::vector<Defect> defects_of_elements(const ControlMesh& mesh, const Topology& manifold);
 
 /// "text; text; ... and 12 more": at most ten.
 [[nodiscard]] std::string summary(const std::vector<Defect>& list);

@@ -90,7 +90,7 @@ Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeO
   Topology topology;
   if (has_topology(mesh)) topology = Topology(mesh);
   const bool manifold = topology.face_count() > 0 && topology.is_manifold();
-  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), mesh, rules, purpose);
+  require_sound(manifold ? defects_of_elements(mesh, topology) : defects(mesh), mesh, rules, purpose);
   require_fitting_faces(mesh, rules);
   require_valences(topology, rules);
   return topology;
