@@ -4,6 +4,7 @@
 #include <snug/bounds/bounding_points.h>
 #include <support/parallel.h>
 #include <testing/patches.h>
+#include <testing/tagged.h>
 
 #include <string>
 #include <vector>
@@ -49,6 +50,20 @@ std::vector<std::vector<double>> numbers_with(const std::shared_ptr<BoundsCache>
           numbers.insert(numbers.end(), {at.x, at.y, at.z});
         }
       }
+    }
+  }
+  // Quadratics beside a crease: rows of pieces are made while those of what they are pieces of are asked for.
+  for (const auto scheme : {oracle::PrimalScheme::loop, oracle::PrimalScheme::catmull_clark}) {
+    oracle::TaggedMesh mesh = oracle::meshes::quad_grid(4, 4);
+    if (scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+      mesh.points[v][2] = 0.1 * static_cast<double>(v * v % 7);
+    for (std::uint32_t k = 0; k < 4; ++k) mesh.creases.push_back({10 + k, 11 + k, 4.5 + 0.3 * k});
+    const oracle::Rules rules{.scheme = scheme};
+    const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules), library);
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      const QuadraticTriangle q = quadratic_triangle(*library, surface.patch(PatchId(p)));
+      all.push_back({q.error, q.normal_error, q.corners[1].x, q.middles[2].z});
     }
   }
   return all;

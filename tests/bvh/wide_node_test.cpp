@@ -248,7 +248,6 @@ TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
   EXPECT_GT(passed, by_gaps / 2);
 }
 
-// Placed in double precision, or in single as a part of its node.
 // A pair of frames sees each other as either does by itself, to the bit.
 TEST(wide_node, frames_that_are_made_together_are_those_made_alone) {
   std::mt19937_64 random(31);
@@ -266,6 +265,7 @@ TEST(wide_node, frames_that_are_made_together_are_those_made_alone) {
   }
 }
 
+// Placed in double precision, or in single as a part of its node.
 TEST(wide_node, distances_to_a_placed_box_never_exceed_those_of_the_contents) {
   std::mt19937_64 random(23);
   std::size_t gaps = 0, total = 0;

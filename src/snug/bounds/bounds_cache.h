@@ -17,7 +17,7 @@ inline constexpr unsigned levels_before_tips = 2;
 /// Rows and tables of kinds, made on first use; then immutable. Thread-safe; looking up costs two loads.
 ///
 /// Memory: kinds and their tables take a few times what the connectivity of the surfaces takes that they are
-///         for. Rows grow with the square of a valence; those that would go beyond a limit are made when they
+///         for; beside semi-sharp creases half a megabyte a patch whose edges all have sharpnesses of their own. Rows grow with the square of a valence; those that would go beyond a limit are made when they
 ///         are needed, and a thread keeps its last eight. No result depends on it.
 class BoundsCache {
  public:

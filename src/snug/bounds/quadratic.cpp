@@ -199,52 +199,63 @@ void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
 // A lattice lasts where a step makes of it lattices again, each in its place, and points of polynomial pieces at their
 // parameters: then its limit points are at their parameters, up to what all levels err by.
 void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
-  const BoundingRows& rows = library.level_rows(kind);
   const std::vector<LayoutPoint> layout = lattice_layout(kind);
   if (layout.empty()) return;
-  const auto image = [&](std::size_t r) {
+  // Rows of a library may be gone once others were made: what is needed of the pieces comes first.
+  struct Piece {
+    std::vector<LayoutPoint> layout;
+    std::vector<double> largest;
+    double sum = 0;  // of `largest`
+  };
+  std::vector<Piece> pieces;
+  double below = 0;
+  std::vector<const Kind*> kinds;
+  for (const BoundingRows::Net& net : library.level_rows(kind).nets()) kinds.push_back(net.kind);
+  for (const Kind* const piece_kind : kinds) {
+    if (!piece_kind->transient() || !has_quadratic_rows(*piece_kind)) return;
+    const QuadraticRows& piece = library.quadratic_rows(*piece_kind);
+    if (!piece.lattice_) return;
+    below = std::max(below, piece.offset_error_);
+    pieces.push_back({piece.layout_, piece.largest_});
+    for (const double weight : piece.largest_) pieces.back().sum += weight;
+  }
+  const BoundingRows& rows = library.level_rows(kind);
+  double size = 1, error = 0;
+  for (const LayoutPoint& at : layout) size = std::max({size, std::fabs(at[0]), std::fabs(at[1])});
+  const auto expect = [&](std::size_t r, double u, double v) {
     LayoutPoint at{0, 0};
     for (std::size_t c = 0; c < layout.size(); ++c) {
       for (std::size_t a = 0; a < 2; ++a) at[a] += rows.weight(r, c) * layout[c][a];
     }
-    return at;
+    error = std::max({error, std::fabs(at[0] - u), std::fabs(at[1] - v)});
   };
-  double size = 1, error = 0;
-  for (const LayoutPoint& at : layout) size = std::max({size, std::fabs(at[0]), std::fabs(at[1])});
-  const auto expect = [&](const LayoutPoint& at, double u, double v) {
-    const double off = std::max(std::fabs(at[0] - u), std::fabs(at[1] - v));
-    error = off <= error ? error : off;  // what is not a number is kept
-  };
-  for (std::size_t r = 0; r < rows.bezier_count(); ++r) {
-    expect(image(r), rows.quadratic(1)[r] + 0.5 * (rows.quadratic(3)[r] + rows.quadratic(4)[r]),
-           rows.quadratic(2)[r] + 0.5 * (rows.quadratic(4)[r] + rows.quadratic(5)[r]));
-  }
   std::vector<double> largest(layout.size(), 0.0);
-  const auto raise = [&](std::size_t c, double weight) { largest[c] = std::max(largest[c], weight); };
-  for (std::size_t c = 0; c < layout.size(); ++c) {
-    for (std::size_t r = 0; r < rows.bezier_count(); ++r) raise(c, std::fabs(rows.weight(r, c)));
+  for (std::size_t r = 0; r < rows.bezier_count(); ++r) {
+    expect(r, rows.quadratic(1)[r] + 0.5 * (rows.quadratic(3)[r] + rows.quadratic(4)[r]),
+           rows.quadratic(2)[r] + 0.5 * (rows.quadratic(4)[r] + rows.quadratic(5)[r]));
+    for (std::size_t c = 0; c < layout.size(); ++c) {
+      largest[c] = std::max(largest[c], std::fabs(rows.weight(r, c)) + rows.entry_error());
+    }
   }
-  double below = 0;
-  for (const BoundingRows::Net& net : rows.nets()) {
-    if (!net.kind->transient() || !has_quadratic_rows(*net.kind)) return;
-    const QuadraticRows& piece = library.quadratic_rows(*net.kind);
-    if (!piece.lattice_) return;
-    below = std::max(below, piece.offset_error_);
-    for (std::size_t i = 0; i < piece.layout_.size(); ++i) {
-      const auto [x, y] = piece.layout_[i];
+  for (std::size_t n = 0; n < pieces.size(); ++n) {
+    const BoundingRows::Net& net = rows.nets()[n];
+    const Piece& piece = pieces[n];
+    for (std::size_t i = 0; i < piece.layout.size(); ++i) {
+      const auto [x, y] = piece.layout[i];
       const auto place = [&](std::size_t k) {
         return (1 - x - y) * net.place[0][k] + x * net.place[1][k] + y * net.place[2][k];
       };
-      expect(image(net.begin + i), place(1), place(2));
+      expect(net.begin + i, place(1), place(2));
     }
     for (std::size_t c = 0; c < layout.size(); ++c) {
       double most = 0, sum = 0;
-      for (std::size_t i = 0; i < piece.layout_.size(); ++i) {
+      for (std::size_t i = 0; i < piece.layout.size(); ++i) {
         const double weight = std::fabs(rows.weight(net.begin + i, c));
         most = std::max(most, weight);
-        sum += weight * piece.largest_[i];
+        sum += weight * piece.largest[i];
       }
-      raise(c, std::min(most, sum));
+      largest[c] =
+          std::max(largest[c], std::min(most + rows.entry_error(), sum + rows.entry_error() * piece.sum));
     }
   }
   const double all = enlarged(error + rows.result_error(size, 0) + gamma_bound(32) * size + below);
@@ -253,7 +264,7 @@ void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
   offset_error_ = all;
   lattice_ = true;
   largest_ = std::move(largest);
-  for (double& weight : largest_) weight = enlarged(weight + rows.entry_error());
+  for (double& weight : largest_) weight = enlarged(weight);
 }
 
 // With l the affine map of parameters to the quadratic's corners and d_i = c_i - l(layout_i), patch - q = sum d_i N_i + (l - q): a
@@ -389,17 +400,15 @@ class Comparison {
     const double size = std::max(hull.largest, largest_of(q));
     compare(hull.coordinates().from(hull.tips_end()), hull.error, rows, q, size, 0);
     if (useless()) return {INFINITY, INFINITY};
-    const std::vector<Restriction>& to_nets = library.quadratic_rows(kind).to_nets();
-    for (std::size_t i = 0; i < to_nets.size(); ++i) {
-      Open& open = next_open();
+    for (std::size_t i = 0; i < rows.nets().size(); ++i) {
+      Patch& piece = next_open().piece;
       if (tips > 0) {
-        open.piece = hull.tips()[i];
+        piece = hull.tips()[i];
       } else {
-        hull.take_net(rows.nets()[i], rows.nets()[i].begin, open.piece);
+        hull.take_net(rows.nets()[i], rows.nets()[i].begin, piece);
       }
-      open.quadratic = restricted(q, to_nets[i]);
-      measure(open, gamma_bound(16) * size, 1);
     }
+    measure_from(0, library.quadratic_rows(kind).to_nets(), q, gamma_bound(16) * size, 1);
     return resolve();
   }
 
@@ -423,13 +432,17 @@ class Comparison {
     const double size = std::max(points_.largest, largest_of(q));
     compare(points_.coordinates(), points_.error, rows, q, size, given);
     if (rows.nets().empty() || useless()) return;
-    const std::vector<Restriction>& to_nets = library_->quadratic_rows(kind).to_level_nets();
-    for (std::size_t i = 0; i < to_nets.size(); ++i) {
-      Open& open = next_open();
-      points_.take_net(rows.nets()[i], rows.nets()[i].begin, open.piece);
-      open.quadratic = restricted(q, to_nets[i]);
-      measure(open, given + gamma_bound(16) * size, level + 1);
-    }
+    const std::size_t first = opened_;
+    for (const BoundingRows::Net& net : rows.nets()) points_.take_net(net, net.begin, next_open().piece);
+    measure_from(first, library_->quadratic_rows(kind).to_level_nets(), q, given + gamma_bound(16) * size,
+                 level + 1);
+  }
+
+  // Rows of a library may be gone once others are made, as this may do: nets come before it.
+  void measure_from(std::size_t first, const std::vector<Restriction>& to_nets, const Quadratic& q,
+                    double given, unsigned level) {
+    for (std::size_t i = first; i < opened_; ++i) open_[i]->quadratic = restricted(q, to_nets[i - first]);
+    for (std::size_t i = first; i < opened_; ++i) measure(*open_[i], given, level);
   }
 
   [[nodiscard]] bool useless() const { return farthest_.any > use_.useless; }

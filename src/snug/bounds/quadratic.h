@@ -72,7 +72,7 @@ class QuadraticRows {
   std::vector<double> fit_;  // 6 x controls, column by column
   // Of a kind that comes again at a corner: places of control points, such that the corners' limits are at
   // (0, 0), (1, 0), (0, 1); corners of a polygon that holds, up to an error a coordinate, where its limit
-  // points are less their parameters; largest |basis function|.
+  // points are less their parameters; largest |basis function|. Of one that stays a lattice: its places, no polygon.
   std::vector<LayoutPoint> layout_, offsets_;
   double offset_error_ = 0;
   std::vector<double> largest_;

@@ -132,7 +132,7 @@ class MeshRefinement {
 
   // Refines until all limits hold; false if that would take more than `most` triangles.
   bool run(std::uint64_t most);
-  // After a run that was ended: of triangles whose errors are known to be too large, and no more.
+  // After a run that was ended: of triangles whose errors are not known but for being too large.
   void find_errors();
   [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
   // Upper bound over all triangles, in mesh units.
@@ -300,7 +300,7 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.path);
   if (!piece.coarse) return;
   const FlatTriangle triangle = flat(t);
-  if (near.error < INFINITY) error_[t] = piece.quadratic.flatness(triangle).error;
+  error_[t] = near.error < INFINITY ? piece.quadratic.flatness(triangle).error : INFINITY;
   // Where the quadratic itself is too far away there is nothing to be gained.
   if (error_[t] > tolerance(t) && !(error_[t] - 2 * near.error > tolerance(t))) {
     const ErrorUse use_here = whole ? ErrorUse{} : ErrorUse{.useless = tolerance(t)};
@@ -486,6 +486,7 @@ void MeshRefinement::carry_out(const Cut& cut) {
     const Index t = i == 0 ? cut.triangle : cut.first_new + i - 1;
     for (std::size_t k = 0; k < 3; ++k) at_[t][k] = local(shape.triangles[i][k]);
     piece_[t] = whole;
+    error_[t] = INFINITY;
     if (!pieces_[whole].coarse) continue;
     const Tile& parent = pieces_[whole];
     piece_[t] = cut.first_piece + i;
@@ -550,7 +551,9 @@ void MeshRefinement::find_errors() {
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
           if (t % 256 == 0) monitor_.checkpoint();
-          if (!(error_[t] < INFINITY)) learn(worker, static_cast<Index>(t));
+          if (error_[t] < INFINITY) continue;
+          pieces_[piece_[t]].known = false;
+          prove(worker, static_cast<Index>(t), false);
         }
       });
 }
