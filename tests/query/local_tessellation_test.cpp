@@ -53,7 +53,9 @@ TEST(local_tessellation, holds_the_error_of_every_triangle_where_tolerances_diff
       for (double& tolerance : tolerances) tolerance = 0.1 * std::pow(10, -1.5 * std::fabs(unit()));
       TessellateOptions options;
       options.corners = true;
-      const auto [t, errors] = tessellate(surface, tolerances, options);
+      const LocalTessellation local = tessellate(surface, tolerances, options);
+      const Tessellation& t = local.mesh;
+      const std::vector<double>& errors = local.errors;
       EXPECT_EQ(t.outcome, Outcome::complete);
       triangles += t.triangles.size();
       for (std::size_t i = 0; i < t.triangles.size(); ++i) {

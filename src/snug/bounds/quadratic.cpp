@@ -241,9 +241,9 @@ void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
     const BoundingRows::Net& net = rows.nets()[n];
     const Piece& piece = pieces[n];
     for (std::size_t i = 0; i < piece.layout.size(); ++i) {
-      const auto [x, y] = piece.layout[i];
+      const LayoutPoint at = piece.layout[i];
       const auto place = [&](std::size_t k) {
-        return (1 - x - y) * net.place[0][k] + x * net.place[1][k] + y * net.place[2][k];
+        return (1 - at[0] - at[1]) * net.place[0][k] + at[0] * net.place[1][k] + at[1] * net.place[2][k];
       };
       expect(net.begin + i, place(1), place(2));
     }
