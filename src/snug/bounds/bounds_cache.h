@@ -17,8 +17,9 @@ inline constexpr unsigned levels_before_tips = 2;
 /// Rows and tables of kinds, made on first use; then immutable. Thread-safe; looking up costs two loads.
 ///
 /// Memory: kinds and their tables take a few times what the connectivity of the surfaces takes that they are
-///         for; beside semi-sharp creases half a megabyte a patch whose edges all have sharpnesses of their own. Rows grow with the square of a valence; those that would go beyond a limit are made when they
-///         are needed, and a thread keeps its last eight. No result depends on it.
+///         for; half a megabyte a patch where every semi-sharp edge has a sharpness of its own. Rows grow with the
+///         square of a valence; those that would go beyond a limit are made when they are needed, and a thread
+///         keeps its last eight. No result depends on it.
 class BoundsCache {
  public:
   explicit BoundsCache(std::size_t max_bytes_of_rows = std::size_t{256} << 20)

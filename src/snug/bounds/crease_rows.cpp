@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <snug/bounds/layout.h>
 #include <snug/scheme/bezier.h>
 
 namespace snug {
@@ -95,35 +96,22 @@ struct CreaseLine {
 };
 
 // The control points of a quad among eight others.
-std::optional<std::array<std::uint32_t, 16>> lattice(const Topology& topology) {
-  constexpr int corner_x[4] = {1, 2, 2, 1}, corner_y[4] = {1, 1, 2, 2};
-  constexpr int to_x[4] = {1, 0, -1, 0}, to_y[4] = {0, 1, 0, -1};
+std::optional<std::array<std::uint32_t, 16>> quad_lattice(const Kind& kind, const Topology& topology) {
   if (topology.face_count() != 9 || topology.vertex_count() != 16) return {};
+  for (const VertexId corner : topology.face(FaceId(0))) {
+    if (topology.face_valence(corner) != 4 || topology.on_boundary(corner) || !topology.is_manifold(corner))
+      return {};
+  }
+  const std::vector<LayoutPoint> layout = lattice_layout(kind);
   std::array<std::uint32_t, 16> place;
   place.fill(16);
-  for (std::size_t f = 0; f < 9; ++f) {
-    if (topology.face(FaceId(f)).size() != 4) return {};
+  for (std::uint32_t v = 0; v < layout.size(); ++v) {
+    // Corners 1 and 2 of the patch are at (2, 1) and (2, 2).
+    const double x = 1 + layout[v][0] + layout[v][1], y = 1 + layout[v][1];
+    if (!(x >= 0 && x <= 3 && y >= 0 && y <= 3)) return {};
+    place[static_cast<std::size_t>(x + 4 * y)] = v;
   }
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto own = static_cast<HalfEdge>(k);
-    HalfEdge h = own;
-    for (std::size_t turn = 0; turn < 4; ++turn) {
-      const std::size_t d = (k + turn) % 4, e = (d + 1) % 4;
-      const auto set = [&](int x, int y, VertexId v) {
-        place[static_cast<std::size_t>(corner_x[k] + x + 4 * (corner_y[k] + y))] = v.value();
-      };
-      set(0, 0, topology.from(h));
-      set(to_x[d], to_y[d], topology.to(h));
-      set(to_x[d] + to_x[e], to_y[d] + to_y[e], topology.to(topology.next(h)));
-      h = topology.ccw(h);
-      if (h == no_half_edge || (h == own) != (turn == 3)) return {};
-    }
-  }
-  std::array<std::uint32_t, 16> sorted = place;
-  std::sort(sorted.begin(), sorted.end());
-  for (std::uint32_t v = 0; v < 16; ++v) {
-    if (sorted[v] != v) return {};
-  }
+  if (std::find(place.begin(), place.end(), 16u) != place.end()) return {};
   return place;
 }
 
@@ -137,7 +125,7 @@ std::optional<CreaseLine> crease_line(const Kind& kind) {
       std::count_if(sharpness.begin(), sharpness.end(), positive) != 3) {
     return {};
   }
-  const auto place = lattice(around.topology);
+  const auto place = quad_lattice(kind, around.topology);
   if (!place) return {};
   const auto sharpness_between = [&](std::size_t a, std::size_t b) {
     for (std::size_t e = 0; e < sharpness.size(); ++e) {

@@ -27,8 +27,8 @@ using LayoutPoint = std::array<double, 2>;
 /// Source:    [Wu05, sec. 4.3]; derivations/tables.md.
 [[nodiscard]] std::vector<LayoutPoint> make_layout(const Kind& kind);
 
-/// Where the control points lie if the faces around the patch are triangles or quads of the regular lattice, none tagged as it
-/// may be; empty if they are not. Exact.
+/// Where the control points lie on the regular lattice of triangles or quads, tags aside; empty if the faces around the
+/// patch do not fit it. Exact.
 [[nodiscard]] std::vector<LayoutPoint> lattice_layout(const Kind& kind);
 
 /// A layout for any kind of patch: the control net that is nearest to both of these. Its limit patch is its

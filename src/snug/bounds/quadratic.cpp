@@ -267,9 +267,9 @@ void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
   for (double& weight : largest_) weight = enlarged(weight);
 }
 
-// With l the affine map of parameters to the quadratic's corners and d_i = c_i - l(layout_i), patch - q = sum d_i N_i + (l - q): a
-// convex combination of d_i and another one.
-// Points beyond a sharp crease are far off l, and weigh little: without them combinations of the others and of zero.
+// With l the affine map of parameters to the quadratic's corners and d_i = c_i - l(layout_i), patch - q is
+// sum d_i N_i + (l - q): a convex combination of the d_i plus one of Bezier points. Control points beyond a sharp crease
+// are far off l, but their basis functions are small: these are bounded one by one, with zero in their place.
 Apart QuadraticRows::distance_on_lattice(const Patch& patch, const Quadratic& q,
                                          const Vector3& normal) const {
   const Vector3 along_u = q[1] - q[0], along_v = q[2] - q[0];

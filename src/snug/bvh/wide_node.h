@@ -26,7 +26,7 @@ struct View {
 /// Source:    derivations/boxes.md, "A walk in single precision".
 struct TreeView : kernels::TreeView {
   TreeView() = default;
-  /// Says nothing of use unless both frames, this one and the other way round, are comparable.
+  /// Requires:  frame.comparable, and that of the opposite direction: scales that differ by less than 2^20.
   explicit TreeView(const RelativeFrame& frame);
   /// About what gaps are lowered by, in units of the target, for trees of this size.
   [[nodiscard]] float doubt(float size) const;

@@ -551,8 +551,10 @@ void MeshRefinement::find_errors() {
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
           if (t % 256 == 0) monitor_.checkpoint();
-          if (error_[t] < INFINITY) continue;
-          pieces_[piece_[t]].known = false;
+          Tile& piece = pieces_[piece_[t]];
+          // A coarse piece is one triangle, so no other thread has it.
+          if (error_[t] < INFINITY || !piece.coarse) continue;
+          piece.known = false;
           prove(worker, static_cast<Index>(t), false);
         }
       });
