@@ -248,6 +248,44 @@ TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
   EXPECT_GT(passed, by_gaps / 2);
 }
 
+// Small boxes face to face, at a distance that is known far better than single precision knows places: near each other far from
+// their origins, or far apart.
+TEST(wide_node, a_walk_tells_no_gap_that_is_wider_than_the_boxes_are_apart) {
+  std::mt19937_64 random(33);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  std::size_t near_passed = 0, far_passed = 0;
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
+    const bool far = trial % 2 == 0;
+    const double half = far ? 0.01 : 1e-3, from_origin = far ? 0.1 : 3;
+    std::array<PlacedFrame, 2> frames{any_frame(random), any_frame(random)};
+    frames[1].rows = frames[0].rows;
+    frames[1].defect = frames[0].defect;
+    frames[0].scale = frames[1].scale = 1;
+    std::array<Obb, 2> boxes;
+    for (Obb& box : boxes) {
+      box.centre = {from_origin * unit(), from_origin * unit(), from_origin * unit()};
+      box.half = {half * (1.5 + 0.5 * unit()), half * (1.5 + 0.5 * unit()), half * (1.5 + 0.5 * unit())};
+    }
+    const std::size_t axis = random() % 3;
+    const double gap = far ? 500 * (1 + unit()) : 4e-4 * (1 + unit());
+    Vector3 between{0.5 * half * unit(), 0.5 * half * unit(), 0.5 * half * unit()};
+    between[axis] = (random() % 2 == 0 ? 1 : -1) * (boxes[0].half[axis] + boxes[1].half[axis] + gap);
+    frames[0].translation = {unit(), unit(), unit()};
+    const Vector3 moved = (boxes[0].centre - Point3{}) + between - (boxes[1].centre - Point3{});
+    frames[1].translation = frames[0].translation + times(frames[0].rows, moved);
+    const RelativeFrame seen(frames[0], frames[1]);
+    const WideNode a({&boxes[0], 1}), b({&boxes[1], 1});
+    const kernels::Deepest near = a.near_boxes(b, 0, TreeView(seen), 0);
+    if (near.places != 0) continue;
+    ++(far ? far_passed : near_passed);
+    // Places in doubles are off by less than the last term; scales of motions by their defects.
+    const double known = gap + 4 * (frames[0].defect + frames[1].defect) * (gap + 8) + 1e-12;
+    ASSERT_LE(static_cast<double>(near.others) * seen.to_world, known) << trial;
+  }
+  EXPECT_GT(near_passed, testing::fewer(3000));
+  EXPECT_GT(far_passed, testing::fewer(9000));
+}
+
 // A pair of frames sees each other as either does by itself, to the bit.
 TEST(wide_node, frames_that_are_made_together_are_those_made_alone) {
   std::mt19937_64 random(31);
