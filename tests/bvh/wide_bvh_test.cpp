@@ -64,7 +64,7 @@ void walk(const WideBvh& tree, const std::vector<Point3>& points, std::uint32_t 
     below.insert(below.end(), items.begin(), items.end());
     return;
   }
-  const TreeNode& node = tree.node(name);
+  const WideNode& node = tree.node(name);
   for (std::uint32_t l = 0; l < node.count(); ++l) {
     std::vector<std::uint32_t> here;
     walk(tree, points, node.names[l], depth + 1, here, deepest);
@@ -243,7 +243,7 @@ TEST(bounding_tree, is_as_deep_for_items_all_alike) {
   EXPECT_EQ(deepest, 3u);
 }
 
-void expect_same(const WideBvh& one, const WideBvh& two, const TreeNode& x, const TreeNode& y) {
+void expect_same(const WideBvh& one, const WideBvh& two, const WideNode& x, const WideNode& y) {
   ASSERT_EQ(x.count(), y.count());
   EXPECT_EQ(x.names, y.names);
   EXPECT_EQ(x.origin(), y.origin());

@@ -7,10 +7,13 @@
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
 
-#include <bit>
+#include <array>
+#include <atomic>
 #include <cstdio>
 #include <optional>
 #include <random>
+#include <set>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -214,6 +217,40 @@ TEST(wide_node, distances_to_a_box_of_another_never_exceed_those_of_the_contents
   EXPECT_LE(line_alone, total / 1000);
 }
 
+// What a walk hands out of a node's boxes beside one of another node.
+struct Walked {
+  std::uint32_t places = 0, first = 0;
+  float others = INFINITY;
+};
+Walked walked(const WideNode& node, const WideNode& other, std::size_t place, const TreeView& view,
+              float distance) {
+  const std::array<std::uint32_t, 1> name{kernels::leaf_bit};
+  const Obb any;
+  const WideNode root({&any, 1}, name);
+  WideNode leaf = node;
+  std::atomic<kernels::NodeBoxes*> leaves{&leaf};
+  std::array<kernels::WalkedPair, WideNode::width> waiting;
+  kernels::Walk walk;
+  walk.trees[0].leaves = &leaves;
+  walk.trees[0].view = view;
+  walk.trees[0].distance = distance;
+  walk.at_hand = {
+      {{&root, 0, kernels::WalkedBox::not_patch}, {&other, static_cast<std::uint32_t>(place), 0}}};
+  walk.has_pair = true;
+  walk.waiting = waiting.data();
+  walk.capacity = waiting.size();
+  Walked result;
+  while (go_on(walk) == kernels::Walk::Halt::patches) {
+    const std::uint32_t found = walk.at_hand[0].place;
+    if (result.places == 0) result.first = found;
+    EXPECT_EQ(result.places >> found & 1u, 0u);
+    result.places |= 1u << found;
+  }
+  EXPECT_EQ(walk.box_tests, node.count());
+  result.others = walk.others;
+  return result;
+}
+
 // What a walk passes over is as far away as it says; and it passes over most of what gaps in double precision do.
 TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
   std::mt19937_64 random(32);
@@ -224,14 +261,11 @@ TEST(wide_node, a_walk_passes_over_no_box_that_is_near) {
     const TreeView view(two.view.frame);
     const auto in_a = two.images(0), in_b = two.images(1);
     for (std::size_t j = 0; j < in_b.size(); ++j) {
-      const kernels::Deepest near = two.nodes[0].near_boxes(two.nodes[1], j, view, two.prune_distance);
+      const Walked near = walked(two.nodes[0], two.nodes[1], j, view, two.prune_distance);
       WideNode::Distances gaps;
       const WideNode::Near exact =
           two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, WideNode::Gaps::axes, gaps);
       ASSERT_LT(near.places, 1u << in_a.size());
-      if (near.places != 0) {
-        ASSERT_TRUE((near.places >> near.deepest & 1u) != 0);
-      }
       for (std::size_t i = 0; i < in_a.size(); ++i) {
         ++total;
         by_gaps += (exact.places >> i & 1u) == 0;
@@ -275,7 +309,7 @@ TEST(wide_node, a_walk_tells_no_gap_that_is_wider_than_the_boxes_are_apart) {
     frames[1].translation = frames[0].translation + times(frames[0].rows, moved);
     const RelativeFrame seen(frames[0], frames[1]);
     const WideNode a({&boxes[0], 1}), b({&boxes[1], 1});
-    const kernels::Deepest near = a.near_boxes(b, 0, TreeView(seen), 0);
+    const Walked near = walked(a, b, 0, TreeView(seen), 0);
     if (near.places != 0) continue;
     ++(far ? far_passed : near_passed);
     // Places in doubles are off by less than the last term; scales of motions by their defects.
@@ -284,6 +318,60 @@ TEST(wide_node, a_walk_tells_no_gap_that_is_wider_than_the_boxes_are_apart) {
   }
   EXPECT_GT(near_passed, testing::fewer(3000));
   EXPECT_GT(far_passed, testing::fewer(9000));
+}
+
+// Every pair of patches of two trees comes once where all are near, and a walk goes on after each halt.
+TEST(wide_node, a_walk_goes_on_with_more_room_and_with_nodes_that_were_not_made) {
+  const PlacedFrame frame;
+  const RelativeFrame seen(frame, frame);
+  std::array<Obb, WideNode::width> boxes;
+  std::array<std::uint32_t, WideNode::width> names;
+  for (std::uint32_t k = 0; k < WideNode::width; ++k) {
+    boxes[k].centre = {0.1 * k, 0.05 * k * k, 0};
+    boxes[k].half = {0.1, 0.2, 0.1};
+    names[k] = kernels::leaf_bit | k;
+  }
+  const std::array<std::uint32_t, 1> name_of_root{0};
+  const WideNode whole({&boxes[0], 1}, name_of_root);
+  const WideNode root(boxes, names);
+  WideNode leaf(boxes);
+  std::atomic<bool> made[2] = {false, false};
+  std::array<std::array<std::atomic<kernels::NodeBoxes*>, WideNode::width>, 2> leaves{};
+  std::vector<kernels::WalkedPair> waiting(WideNode::width);
+  kernels::Walk walk;
+  for (std::size_t s = 0; s < 2; ++s) {
+    kernels::WalkedTree& tree = walk.trees[s];
+    tree.nodes = &root;
+    tree.made = &made[s];
+    tree.leaves = leaves[s].data();
+    tree.view = TreeView(seen);
+    tree.distance = 100;
+    walk.at_hand[s] = {&whole, 0, kernels::WalkedBox::not_patch};
+  }
+  walk.has_pair = true;
+  walk.waiting = waiting.data();
+  walk.capacity = waiting.size();
+  std::set<std::array<std::uint32_t, 4>> pairs;
+  std::array<std::size_t, 4> halts{};
+  for (auto why = go_on(walk); why != kernels::Walk::Halt::end; why = go_on(walk)) {
+    ++halts[static_cast<std::size_t>(why)];
+    if (why == kernels::Walk::Halt::patches) {
+      const auto& [a, b] = walk.at_hand;
+      EXPECT_TRUE(pairs.insert({a.leaf, a.place, b.leaf, b.place}).second);
+    } else if (why == kernels::Walk::Halt::full) {
+      waiting.resize(waiting.size() + 3);
+      walk.waiting = waiting.data();
+      walk.capacity = waiting.size();
+    } else if (walk.name == 0) {
+      made[walk.side] = true;
+    } else {
+      leaves[walk.side][walk.name & ~kernels::leaf_bit] = &leaf;
+    }
+  }
+  EXPECT_EQ(pairs.size(), 4096u);
+  EXPECT_EQ(walk.others, INFINITY);
+  EXPECT_EQ(halts[static_cast<std::size_t>(kernels::Walk::Halt::not_made)], 18u);
+  EXPECT_GT(halts[static_cast<std::size_t>(kernels::Walk::Halt::full)], 2u);
 }
 
 // A pair of frames sees each other as either does by itself, to the bit.
@@ -379,10 +467,9 @@ TEST(wide_node, distances_are_the_same_on_every_instruction_set) {
         for (const WideNode::Gaps which : both_gaps) {
           add(two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, which, one));
         }
-        const kernels::Deepest near =
-            two.nodes[0].near_boxes(two.nodes[1], j, TreeView(two.view.frame), two.prune_distance);
-        all.insert(all.end(),
-                   {static_cast<float>(near.places), static_cast<float>(near.deepest), near.others});
+        const Walked near =
+            walked(two.nodes[0], two.nodes[1], j, TreeView(two.view.frame), two.prune_distance);
+        all.insert(all.end(), {static_cast<float>(near.places), static_cast<float>(near.first), near.others});
       }
       add(two.nodes[0].distances(seen, two.view.frame.slack, two.prune_distance, one));
       two.nodes[0].distances(two.clouds[0][0][0] + Vector3{0.1, 0.2, 0.3}, 0, one);

@@ -51,7 +51,7 @@ std::vector<std::uint32_t> walk(const SurfaceBvh& model,
     }
     return below;
   }
-  const TreeNode& node = model.tree().node(name);
+  const WideNode& node = model.tree().node(name);
   for (std::uint32_t l = 0; l < node.count(); ++l) {
     for (const std::uint32_t patch : walk(model, samples, node.names[l])) {
       below.push_back(patch);

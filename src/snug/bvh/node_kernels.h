@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -49,33 +50,18 @@ struct SeenBox {
   float reach;        ///< of the other node
   float offset[3];    ///< of the other node's origin from this one's, here
 };
-/// How another tree is seen: x -> columns x + translation, in single precision; lengths become `scale` times as large.
-struct TreeView {
-  alignas(16) float columns[3][4];
-  alignas(16) float translation[4];
-  float scale, inverse_scale;
-  float slack;  ///< taken off from gaps, besides what roundings do to them
-  float reach;  ///< of the translation: the sum of its sizes
-};
-/// The boxes of a node, and the origin they are relative to.
-struct alignas(32) NodeBoxes {
+/// Names of children: another node, or a leaf with this bit set.
+inline constexpr std::uint32_t leaf_bit = 0x80000000u;
+/// The boxes of a node, the point they are relative to, and what they are called in a tree.
+struct alignas(64) NodeBoxes {
   float rows[obb_rows * node_width] = {};
   float sizes[node_width] = {};
-  double origin[3] = {};
+  std::array<std::uint32_t, node_width> names{};
+  double reference[3] = {};
   float reach = 0;  ///< of the largest, as in obb_distances()
-  std::uint32_t count = 0;
+  std::uint32_t box_count = 0;
 };
-/// What roundings of a walk do to a gap, at most, as a part of all that is involved.
-inline constexpr float walk_roundings = 80 * 0x1p-24F;
-/// The boxes that may be within a distance, a bit each; the one that overlaps most deeply; the least gap of the others.
-struct Deepest {
-  std::uint32_t places, deepest;
-  float others;
-};
-/// The boxes of `node` against the box at a place of `other`, all placed in single precision: quicker than obb_distances(), and
-/// less exact by some 2^-15 of the trees' sizes.
-Deepest near_boxes(const NodeBoxes& node, const NodeBoxes& other, std::size_t place, const TreeView& view,
-                   float prune_distance);
+static_assert(sizeof(NodeBoxes) == 576);
 /// Which gaps are looked for: across fifteen axes, or along the line of the centres and Turn::direction,
 /// which are sharper for boxes that are far apart.
 enum class Gaps : std::uint8_t { axes, lines };

@@ -123,10 +123,6 @@ Ball WideBvh::Unmade::ball_around_all() const {
           enlarged(radius) + 64 * unit_roundoff * (max_abs(origin - Point3{}) + reach) + 0x1p-480};
 }
 
-TreeNode::TreeNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes) : WideNode(boxes) {
-  std::copy(of_boxes.begin(), of_boxes.end(), names.begin());
-}
-
 WideBvh::WideBvh(std::size_t item_count) : items_(item_count) {
   SNUG_EXPECT(item_count > 0 && item_count < leaf_bit);
   std::iota(items_.begin(), items_.end(), 0u);
@@ -168,7 +164,7 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) :
 // Splits sets in two, again and again, after a multiple of the sets of a leaf.
 class WideBvh::Builder {
  public:
-  Builder(std::span<const FittedSet> sets, std::span<std::uint32_t> items, std::vector<TreeNode>& nodes,
+  Builder(std::span<const FittedSet> sets, std::span<std::uint32_t> items, std::vector<WideNode>& nodes,
           const WorkMonitor& monitor)
       : sets_(sets),
         items_(items),
@@ -222,7 +218,7 @@ class WideBvh::Builder {
       boxes.push_back(part.box);
       names.push_back(make(part));
     }
-    nodes_[name] = TreeNode(boxes, names);
+    nodes_[name] = WideNode(boxes, names);
     return static_cast<std::uint32_t>(name);
   }
 
@@ -284,7 +280,7 @@ class WideBvh::Builder {
 
   std::span<const FittedSet> sets_;
   std::span<std::uint32_t> items_;
-  std::vector<TreeNode>& nodes_;
+  std::vector<WideNode>& nodes_;
   const WorkMonitor& monitor_;
   std::vector<std::pair<float, std::uint32_t>> order_;
   std::vector<Sides> sides_;  // of the items, along the axes of the range that they are in
@@ -416,7 +412,7 @@ void WideBvh::finish(const Obb& box, const Ball& ball, std::span<const Obb> part
   set_root();
 }
 
-void WideBvh::set_root() { root_ = TreeNode(std::span(&box_, 1), std::span(&whole_, 1)); }
+void WideBvh::set_root() { root_ = WideNode(std::span(&box_, 1), std::span(&whole_, 1)); }
 
 void WideBvh::narrow(std::span<const Point3> hull) {
   dop_.narrow(hull);
@@ -546,7 +542,7 @@ void WideBvh::keep(Subtree of, std::span<const Obb> boxes) const {
   std::array<std::uint32_t, WideNode::width> names;
   for (std::size_t i = 0; i < boxes.size(); ++i) names[i] = name_of({of.level - 1, of.number * 8 + i});
   const std::uint32_t name = name_of(of);
-  nodes_[name] = TreeNode(boxes, std::span(names).first(boxes.size()));
+  nodes_[name] = WideNode(boxes, std::span(names).first(boxes.size()));
   made_[name].store(true, std::memory_order_release);
 }
 
@@ -556,7 +552,7 @@ std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
 }
 
 std::size_t WideBvh::bytes() const {
-  return nodes_.capacity() * (sizeof(TreeNode) + 1) + node_boxes_.capacity() * sizeof(Obb) +
+  return nodes_.capacity() * (sizeof(WideNode) + 1) + node_boxes_.capacity() * sizeof(Obb) +
          items_.capacity() * sizeof(std::uint32_t) + (unmade_ ? unmade_->items.capacity() * sizeof(Item) : 0);
 }
 

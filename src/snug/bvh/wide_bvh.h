@@ -13,13 +13,6 @@
 
 namespace snug {
 
-/// A node of a tree, and what its boxes are called there.
-struct alignas(64) TreeNode : WideNode {
-  TreeNode() = default;
-  TreeNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes);
-  std::array<std::uint32_t, width> names{};
-};
-
 /// A tree of oriented boxes over items, eight children a node; its leaves are up to eight items that lie near
 /// each other. Knows boxes and numbers only: what a leaf opens to is its owner's business. Made at once, or
 /// where node() first comes; may be read by many threads.
@@ -28,7 +21,7 @@ class WideBvh {
  public:
   static constexpr std::size_t leaf_size = WideNode::width;
   /// Name of a child: another node, or a leaf with this bit set.
-  static constexpr std::uint32_t leaf_bit = 0x80000000u;
+  static constexpr std::uint32_t leaf_bit = kernels::leaf_bit;
 
   /// Makes the boxes that together hold the items of a leaf: one, or one an item.
   using Fit =
@@ -80,11 +73,18 @@ class WideBvh {
   void narrow(std::span<const Point3> hull);
 
   /// The root is the one box of this node.
-  [[nodiscard]] const TreeNode& root() const { return root_; }
+  [[nodiscard]] const WideNode& root() const { return root_; }
   /// A child that a node names.
-  [[nodiscard]] const TreeNode& node(std::uint32_t name) const {
+  [[nodiscard]] const WideNode& node(std::uint32_t name) const {
     if (!made_[name].load(std::memory_order_acquire)) make(name);
     return nodes_[name];
+  }
+  /// Its nodes for a walk, without leaves.
+  [[nodiscard]] kernels::WalkedTree walked() const {
+    kernels::WalkedTree tree;
+    tree.nodes = nodes_.data();
+    tree.made = made_.data();
+    return tree;
   }
   /// A ball around everything.
   [[nodiscard]] const Ball& ball() const { return ball_; }
@@ -129,11 +129,11 @@ class WideBvh {
   std::vector<std::uint32_t> begins_;  // name of the first node of each level; of leaves 0
   // Written before `made_` is set.
   mutable std::vector<std::uint32_t> items_;
-  mutable std::vector<TreeNode> nodes_;
+  mutable std::vector<WideNode> nodes_;
   mutable std::vector<std::atomic<bool>> made_;
   std::vector<Obb> node_boxes_;  // of trees that are refitted
   std::unique_ptr<Unmade> unmade_;
-  TreeNode root_;
+  WideNode root_;
   Obb box_;
   Ball ball_;
   Dop26 dop_;

@@ -66,15 +66,15 @@ float TreeView::doubt(float size) const {
   return slack + kernels::walk_roundings * (size + 2 * scale * size + reach);
 }
 
-WideNode::WideNode(std::span<const Obb> boxes) {
-  SNUG_EXPECT(!boxes.empty() && boxes.size() <= width);
-  boxes_.count = static_cast<std::uint32_t>(boxes.size());
+WideNode::WideNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes) {
+  SNUG_EXPECT(!boxes.empty() && boxes.size() <= width && of_boxes.size() <= width);
+  std::copy(of_boxes.begin(), of_boxes.end(), names.begin());
+  box_count = static_cast<std::uint32_t>(boxes.size());
   const Point3 origin = boxes[0].centre;
-  for (std::size_t k = 0; k < 3; ++k) boxes_.origin[k] = origin[k];
-  float* const rows = boxes_.rows;
+  for (std::size_t k = 0; k < 3; ++k) reference[k] = origin[k];
   for (std::size_t l = 0; l < boxes.size(); ++l) {
     const Obb& box = boxes[l];
-    boxes_.sizes[l] = float_up(2 * ball_around(box).radius);
+    sizes[l] = float_up(2 * ball_around(box).radius);
     const Vector3 centre = box.centre - origin;
     double moved = 4 * unit_roundoff * max_abs(centre);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -90,13 +90,13 @@ WideNode::WideNode(std::span<const Obb> boxes) {
     for (std::size_t k = 0; k < 3; ++k) {
       rows[width * (3 + k) + l] = float_up(enlarged(box.half[k] + moved + 8 * single_roundoff * sum));
     }
-    float reach = 0;
-    for (std::size_t r = 0; r < 6; ++r) reach += std::fabs(rows[width * r + l]);
+    float of_box = 0;
+    for (std::size_t r = 0; r < 6; ++r) of_box += std::fabs(rows[width * r + l]);
     // A NaN stays.
-    if (!std::isnan(boxes_.reach) && !(reach <= boxes_.reach)) boxes_.reach = reach;
+    if (!std::isnan(reach) && !(of_box <= reach)) reach = of_box;
   }
   // Places that are not taken repeat the first box, so that they are decided when it is.
-  std::fill(boxes_.sizes + boxes.size(), boxes_.sizes + width, boxes_.sizes[0]);
+  std::fill(sizes + boxes.size(), sizes + width, sizes[0]);
   for (std::size_t r = 0; r < kernels::obb_rows; ++r) {
     float* const row = rows + width * r;
     std::fill(row + boxes.size(), row + width, row[0]);
@@ -104,7 +104,7 @@ WideNode::WideNode(std::span<const Obb> boxes) {
 }
 
 Obb WideNode::box(std::size_t place) const {
-  const auto number = [&](std::size_t row) { return static_cast<double>(boxes_.rows[width * row + place]); };
+  const auto number = [&](std::size_t row) { return static_cast<double>(rows[width * row + place]); };
   Obb box;
   box.centre = origin() + Vector3{number(0), number(1), number(2)};
   box.half = {number(3), number(4), number(5)};
@@ -116,12 +116,12 @@ WideNode::Near WideNode::distances(const WideNode& other, std::size_t place, con
                                    float prune_distance, Gaps which, Distances& out) const {
   const Vector3 offset = view.frame.apply(other.origin()) - origin();
   const kernels::SeenBox seen{
-      other.boxes_.rows + place,
-      other.boxes_.reach,
+      other.rows + place,
+      other.reach,
       {static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)}};
-  const Near near = kernels::obb_distances(boxes_.rows, boxes_.reach, seen, view.turn, view.slack,
-                                           prune_distance, which, out.data());
-  return {near.places & ((1u << boxes_.count) - 1), near.others};
+  const Near near =
+      kernels::obb_distances(rows, reach, seen, view.turn, view.slack, prune_distance, which, out.data());
+  return {near.places & ((1u << box_count) - 1), near.others};
 }
 
 WideNode::Near WideNode::distances(const PlacedBox& other, double slack, float prune_distance,
@@ -129,9 +129,9 @@ WideNode::Near WideNode::distances(const PlacedBox& other, double slack, float p
   const Vector3 offset = other.centre - origin();
   kernels::OtherBox box = other.box;
   for (std::size_t k = 0; k < 3; ++k) box.centre[k] = static_cast<float>(offset[k]);
-  const Near near = kernels::obb_distances(boxes_.rows, boxes_.reach, box, float_up(slack + single_underflow),
+  const Near near = kernels::obb_distances(rows, reach, box, float_up(slack + single_underflow),
                                            prune_distance, out.data());
-  return {near.places & ((1u << boxes_.count) - 1), near.others};
+  return {near.places & ((1u << box_count) - 1), near.others};
 }
 
 WideNode::Near WideNode::distances(const Point3& point, double slack, float prune_distance,
@@ -139,15 +139,15 @@ WideNode::Near WideNode::distances(const Point3& point, double slack, float prun
   const Vector3 offset = point - origin();
   const float centre[3] = {static_cast<float>(offset.x), static_cast<float>(offset.y),
                            static_cast<float>(offset.z)};
-  const Near near = kernels::obb_distances(boxes_.rows, centre, float_up(slack + single_underflow),
-                                           prune_distance, out.data());
-  return {near.places & ((1u << boxes_.count) - 1), near.others};
+  const Near near =
+      kernels::obb_distances(rows, centre, float_up(slack + single_underflow), prune_distance, out.data());
+  return {near.places & ((1u << box_count) - 1), near.others};
 }
 
 void WideNode::extents(const Vector3& direction, Distances& out) const {
   const float along[3] = {static_cast<float>(direction.x), static_cast<float>(direction.y),
                           static_cast<float>(direction.z)};
-  kernels::obb_extents(boxes_.rows, boxes_.reach, along, out.data());
+  kernels::obb_extents(rows, reach, along, out.data());
 }
 
 }  // namespace snug

@@ -7,6 +7,7 @@
 #include <snug/bvh/frame.h>
 #include <snug/bvh/node_kernels.h>
 #include <snug/bvh/obb.h>
+#include <snug/bvh/walk_kernel.h>
 
 namespace snug {
 
@@ -41,7 +42,7 @@ struct PlacedBox {
 /// Up to eight boxes, in single precision relative to an origin of their own, so that all eight are compared
 /// with another box at once and small ones lose nothing far from the coordinates' origin.
 /// Guarantee: rounding to single precision never makes boxes smaller. The same bits on every instruction set.
-class WideNode {
+class WideNode : public kernels::NodeBoxes {
  public:
   static constexpr std::size_t width = kernels::node_width;
   using Distances = std::array<float, width>;
@@ -50,13 +51,14 @@ class WideNode {
 
   /// No boxes.
   WideNode() = default;
-  /// Requires:  1 to 8 boxes, coordinates at most about 4, sizes that are not finite allowed.
-  explicit WideNode(std::span<const Obb> boxes);
+  /// Requires:  1 to 8 boxes, coordinates at most about 4, sizes that are not finite allowed; as many names, or none where
+  ///            no tree needs them.
+  explicit WideNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes = {});
 
-  [[nodiscard]] std::size_t count() const { return boxes_.count; }
-  [[nodiscard]] Point3 origin() const { return {boxes_.origin[0], boxes_.origin[1], boxes_.origin[2]}; }
+  [[nodiscard]] std::size_t count() const { return box_count; }
+  [[nodiscard]] Point3 origin() const { return {reference[0], reference[1], reference[2]}; }
   /// Upper bound of the distance of two points of a box, for choosing which one to open.
-  [[nodiscard]] float size_of(std::size_t place) const { return boxes_.sizes[place]; }
+  [[nodiscard]] float size_of(std::size_t place) const { return sizes[place]; }
   /// A box as it is kept, read in double: what it bounds is among all centre + sum of s_k half_k axis_k with |s_k| <= 1,
   /// up to one rounding of the origin. Its axes are orthonormal up to a few roundings of single precision.
   [[nodiscard]] Obb box(std::size_t place) const;
@@ -71,12 +73,6 @@ class WideNode {
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
   Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance, Gaps which,
                  Distances& out) const;
-  /// Which boxes may be within `prune_distance` of one of another node's, all placed in single precision.
-  /// Guarantee: those of others are farther apart than that, as above, and than the result's `others`.
-  [[nodiscard]] kernels::Deepest near_boxes(const WideNode& other, std::size_t place, const TreeView& view,
-                                            float prune_distance) const {
-    return kernels::near_boxes(boxes_, other.boxes_, place, view, prune_distance);
-  }
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
   /// The same to a point.
@@ -87,9 +83,6 @@ class WideNode {
   /// Upper bounds of dot(direction, x - origin()) over the boxes.
   /// Requires:  |direction| about 1.
   void extents(const Vector3& direction, Distances& out) const;
-
- private:
-  kernels::NodeBoxes boxes_;
 };
 
 }  // namespace snug

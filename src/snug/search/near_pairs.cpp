@@ -1,12 +1,18 @@
 #include <snug/search/near_pairs.h>
 
 #include <algorithm>
-#include <bit>
+#include <utility>
+
 namespace snug {
 namespace {
 
 // Beyond, in units of a surface that is about 2 large, a walk passes over too little.
 constexpr float max_doubt = 0x1p-7F;
+
+Node patch_at(const kernels::WalkedBox& box) {
+  return {static_cast<const WideNode*>(box.boxes), static_cast<std::uint8_t>(box.place), Node::Kind::patch,
+          box.leaf};
+}
 
 }  // namespace
 
@@ -16,72 +22,51 @@ NearPairs::NearPairs(PairFrames& frames, SearchStats& stats, double distance)
     const RelativeFrame& seen = frames.seen_from(s);
     usable_ = usable_ && seen.comparable;
     if (!usable_) return;
-    view_[s] = TreeView(seen);
-    distance_[s] = static_cast<float>(distance * seen.from_world);
+    kernels::WalkedTree& tree = walk_.trees[s];
+    tree = model_[s]->walked();
+    const TreeView view(seen);
+    tree.view = view;
+    tree.distance = static_cast<float>(distance * seen.from_world);
     // Rounded down: by one rounding of the factor and two of products.
-    to_query_[s] = static_cast<float>(seen.to_world) * (1 - 4 * 0x1p-24F);
-    usable_ = usable_ && view_[s].doubt(2) < max_doubt;
-    stack_[0][s] = {&model_[s]->tree().root(), 0, none};
+    tree.to_query = static_cast<float>(seen.to_world) * (1 - 4 * 0x1p-24F);
+    usable_ = usable_ && view.doubt(2) < max_doubt;
+    walk_.at_hand[s] = {&model_[s]->tree().root(), 0, kernels::WalkedBox::not_patch};
   }
-  ratio_ = view_[0].scale;
-  waiting_ = 1;
+  walk_.has_pair = true;
+  walk_.waiting = waiting_.data();
+  walk_.capacity = waiting_.size();
 }
 
 bool NearPairs::next(NodePair& pair) {
-  while (waiting_ > 0) {
-    Names names = pop();
-    bool near = true;
-    while (near) {
-      const Name &a = names[0], &b = names[1];
-      if (a.is_patch() && b.is_patch()) {
-        pair = {{a.node(), b.node()}, 0};
+  for (;;) {
+    const kernels::Walk::Halt why = go_on(walk_);
+    const SurfaceBvh& model = *model_[walk_.side];
+    switch (why) {
+      case kernels::Walk::Halt::patches:
+      case kernels::Walk::Halt::end:
+        stats_.box_tests += std::exchange(walk_.box_tests, 0);
+        if (why == kernels::Walk::Halt::end) return false;
+        pair = {{patch_at(walk_.at_hand[0]), patch_at(walk_.at_hand[1])}, 0};
         return true;
-      }
-      // The larger one, so that no large box is compared with many small ones.
-      near = open(names, b.is_patch() || (!a.is_patch() && a.size() >= ratio_ * b.size()) ? 0 : 1);
+      case kernels::Walk::Halt::not_made:
+        if ((walk_.name & WideBvh::leaf_bit) != 0) {
+          static_cast<void>(model.leaf(walk_.name & ~WideBvh::leaf_bit));
+        } else {
+          static_cast<void>(model.tree().node(walk_.name));
+        }
+        break;
+      case kernels::Walk::Halt::full:
+        make_room();
     }
   }
-  return false;
 }
 
-void NearPairs::push_beyond(const Names& pair) {
-  more_.push_back(pair);
-  ++waiting_;
-}
-
-NearPairs::Names NearPairs::pop() {
-  --waiting_;
-  if (waiting_ < stack_.size()) return stack_[waiting_];
-  const Names pair = more_.back();
-  more_.pop_back();
-  return pair;
-}
-
-bool NearPairs::open(Names& pair, std::size_t side) {
-  const SurfaceBvh& model = *model_[side];
-  const Name mine = pair[side], other = pair[1 - side];
-  const std::uint32_t name = static_cast<const TreeNode*>(mine.boxes)->names[mine.place];
-  const WideNode* boxes;
-  std::uint32_t leaf = none;
-  if ((name & WideBvh::leaf_bit) == 0) {
-    boxes = &model.tree().node(name);
-  } else {
-    leaf = name & ~WideBvh::leaf_bit;
-    boxes = &model.leaf(leaf);
-  }
-  stats_.box_tests += boxes->count();
-  const kernels::Deepest near = boxes->near_boxes(*other.boxes, other.place, view_[side], distance_[side]);
-  // Less what products lose where they underflow.
-  others_ = std::min(others_, near.others * to_query_[side] - 0x1p-125F);
-  if (near.places == 0) return false;
-  for (std::uint32_t rest = near.places & ~(1u << near.deepest); rest != 0; rest &= rest - 1) {
-    Names waiting;
-    waiting[side] = {boxes, static_cast<std::uint32_t>(std::countr_zero(rest)), leaf};
-    waiting[1 - side] = other;
-    push(waiting);
-  }
-  pair[side] = {boxes, near.deepest, leaf};
-  return true;
+void NearPairs::make_room() {
+  std::vector<kernels::WalkedPair> larger(2 * walk_.capacity);
+  std::copy_n(walk_.waiting, walk_.waiting_count, larger.begin());
+  more_waiting_ = std::move(larger);
+  walk_.waiting = more_waiting_.data();
+  walk_.capacity = more_waiting_.size();
 }
 
 }  // namespace snug

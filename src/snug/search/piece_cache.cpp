@@ -46,21 +46,19 @@ void PieceCache::Roots::clear() {
 }
 
 std::size_t PieceCache::bytes() const {
-  return splits_.size() * sizeof(Split) + entries_.size() * sizeof(Entry) +
-         offsets_.size() * sizeof(OffsetTriangle) + bytes_of_points_ + roots_.bytes() + open_nodes_.bytes() +
-         open_pairs_.bytes();
+  return splits_.bytes() + entries_.bytes() + offsets_.bytes() + bytes_of_points_ + roots_.bytes() +
+         open_nodes_.bytes() + open_pairs_.bytes();
 }
 
 void PieceCache::begin(std::size_t max_bytes) {
   touched_ = 0;
   if (++query_ == 0 || bytes() > max_bytes) {
     roots_ = {};
-    splits_.clear();
-    entries_.clear();
-    offsets_.clear();
+    splits_ = {};
+    entries_ = {};
+    offsets_ = {};
     open_nodes_ = {};
     open_pairs_ = {};
-    split_count_ = entry_count_ = offset_count_ = 0;
     bytes_of_points_ = 0;
     query_ = 1;
   }
@@ -69,20 +67,21 @@ void PieceCache::begin(std::size_t max_bytes) {
 void PieceCache::renew(const SurfaceBvh& model) {
   model_ = &model;
   roots_.clear();
-  split_count_ = entry_count_ = offset_count_ = 0;
+  splits_.forget();
+  entries_.forget();
+  offsets_.forget();
 }
 
 template <class Make>
 std::uint32_t PieceCache::add(PatchId root, const Make& make) {
-  if (entry_count_ == entries_.size()) entries_.emplace_back();
-  Entry& entry = entries_[entry_count_];
+  Entry& entry = entries_.add();
   const std::size_t before = entry.patch.points.capacity();
   entry.root = root;
   make(entry.patch);
   entry.children.fill(none);
   entry.offset = entry.split = none;
   bytes_of_points_ += (entry.patch.points.capacity() - before) * sizeof(Vector3);
-  return static_cast<std::uint32_t>(entry_count_++);
+  return static_cast<std::uint32_t>(entries_.size() - 1);
 }
 
 std::uint32_t PieceCache::root_entry(PatchId root) {
@@ -119,16 +118,15 @@ const OffsetTriangle& PieceCache::offset_of_entry(std::uint32_t i) {
   Entry& entry = entries_[i];
   if (entry.offset == none) {
     const BoundMethod method = always_rows_ ? BoundMethod::rows : model_->method();
-    if (offset_count_ == offsets_.size()) offsets_.emplace_back();
-    offsets_[offset_count_] = offset_of(model_->surface().library(), entry.patch, points_, method);
-    entry.offset = static_cast<std::uint32_t>(offset_count_++);
+    offsets_.add() = offset_of(model_->surface().library(), entry.patch, points_, method);
+    entry.offset = static_cast<std::uint32_t>(offsets_.size() - 1);
   }
   return offsets_[entry.offset];
 }
 
 PieceCache::Opened PieceCache::open(const Node& node) {
   if (node.kind == Node::Kind::tree) {
-    const std::uint32_t name = static_cast<const TreeNode*>(node.boxes)->names[node.place];
+    const std::uint32_t name = node.boxes->names[node.place];
     if ((name & WideBvh::leaf_bit) == 0) return {&model_->tree().node(name), Node::Kind::tree, 0};
     const std::uint32_t leaf = name & ~WideBvh::leaf_bit;
     return {&model_->leaf(leaf), Node::Kind::patch, leaf};
@@ -137,12 +135,8 @@ PieceCache::Opened PieceCache::open(const Node& node) {
   Entry& whole = entries_[parent];
   if (whole.split == none) {
     const Split made{split_node(*model_, whole.patch), parent, 0};
-    if (split_count_ == splits_.size()) {
-      splits_.push_back(made);
-    } else {
-      splits_[split_count_] = made;
-    }
-    whole.split = static_cast<std::uint32_t>(split_count_++);
+    splits_.add() = made;
+    whole.split = static_cast<std::uint32_t>(splits_.size() - 1);
   }
   Split& split = splits_[whole.split];
   if (split.query != query_) {

@@ -146,8 +146,8 @@ class PieceCache {
   // The nodes that an entry opens to.
   struct Split {
     SplitNode pieces;
-    std::uint32_t parent;     // the entry
-    std::uint32_t query = 0;  // that opened it last
+    std::uint32_t parent = none;  // the entry
+    std::uint32_t query = 0;      // that opened it last
   };
   // Entries of whole patches, by number; open addressing.
   class Roots {
@@ -168,6 +168,27 @@ class PieceCache {
     std::size_t count_ = 0;
     std::uint32_t round_ = 1;  // places of earlier ones are free
   };
+  // Elements that stay where they are, with their memory when they are forgotten.
+  template <class T>
+  class Store {
+   public:
+    [[nodiscard]] T& operator[](std::size_t i) { return items_[i]; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    // One more, as it was left when it was forgotten.
+    T& add() {
+      if (size_ == made_) {
+        items_.emplace_back();
+        ++made_;
+      }
+      return items_[size_++];
+    }
+    void forget() { size_ = 0; }
+    [[nodiscard]] std::size_t bytes() const { return made_ * sizeof(T); }
+
+   private:
+    std::deque<T> items_;
+    std::size_t size_ = 0, made_ = 0;
+  };
   [[nodiscard]] std::uint32_t entry_of(const Node& node);
   [[nodiscard]] std::uint32_t entry_of(const PieceName& name);
   [[nodiscard]] std::uint32_t root_entry(PatchId root);
@@ -185,11 +206,9 @@ class PieceCache {
   Frontier<NodeGap> open_nodes_;
   Frontier<NodePair> open_pairs_;
   Roots roots_;
-  // Elements beyond the counts are spare memory.
-  std::deque<Split> splits_;
-  std::deque<Entry> entries_;
-  std::deque<OffsetTriangle> offsets_;
-  std::size_t split_count_ = 0, entry_count_ = 0, offset_count_ = 0;
+  Store<Split> splits_;
+  Store<Entry> entries_;
+  Store<OffsetTriangle> offsets_;
   std::size_t bytes_of_points_ = 0;
   std::uint32_t query_ = 0;
   std::size_t touched_ = 0;

@@ -90,6 +90,7 @@ struct PieceBuild {
 /// A node of pieces: boxes around up to N of them, and their records.
 template <std::size_t N>
 struct PieceLeaf : WideNode {
+  PieceLeaf() = default;
   /// Requires:  1 to N pieces.
   explicit PieceLeaf(std::span<const PieceBuild> pieces);
   std::array<PieceBounds, N> bounds;

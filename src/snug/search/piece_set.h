@@ -89,7 +89,7 @@ bool PieceSet::visit_near(const Point3& p, double& reach, const Visit& visit) co
   std::array<Near, 12 * WideNode::width> stack;
   std::size_t waiting = 0;
   const auto is_near = [&](float gap) { return static_cast<double>(gap) <= reach; };
-  const auto open = [&](const TreeNode& node) {
+  const auto open = [&](const WideNode& node) {
     WideNode::Distances gaps;
     node.distances(p, 0, gaps);
     const std::size_t begin = waiting;

@@ -64,7 +64,7 @@ const LeafNode& SurfaceBvh::Leaves::keep(std::uint32_t i, std::span<const PieceB
   } else {
     made = std::make_unique<LeafNode>(pieces);
   }
-  LeafNode* there = nullptr;
+  kernels::NodeBoxes* there = nullptr;
   if (nodes_[i].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel)) return *made.release();
   // Another thread was quicker: both are the same.
   const std::lock_guard lock(mutex_);
@@ -73,21 +73,21 @@ const LeafNode& SurfaceBvh::Leaves::keep(std::uint32_t i, std::span<const PieceB
   } else {
     --count_;
   }
-  return *there;
+  return *static_cast<const LeafNode*>(there);
 }
 
 void SurfaceBvh::Leaves::clear() {
   unused_.reserve(count_);
   for (auto& place : nodes_) {
-    if (LeafNode* const node = place.load(std::memory_order_relaxed)) {
-      unused_.emplace_back(node);
+    if (kernels::NodeBoxes* const node = place.load(std::memory_order_relaxed)) {
+      unused_.emplace_back(static_cast<LeafNode*>(node));
       place.store(nullptr, std::memory_order_relaxed);
     }
   }
 }
 
 SurfaceBvh::Leaves::~Leaves() {
-  for (const auto& node : nodes_) delete node.load(std::memory_order_relaxed);
+  for (const auto& node : nodes_) delete static_cast<LeafNode*>(node.load(std::memory_order_relaxed));
 }
 
 std::size_t SurfaceBvh::Leaves::bytes() const {

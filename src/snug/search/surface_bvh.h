@@ -54,6 +54,12 @@ class SurfaceBvh {
     const LeafNode* const ready = leaves_->find(i);
     return ready != nullptr ? *ready : make_leaf(i);
   }
+  /// The tree for a walk, seen from nowhere yet.
+  [[nodiscard]] kernels::WalkedTree walked() const {
+    kernels::WalkedTree tree = tree_.walked();
+    tree.leaves = leaves_->nodes();
+    return tree;
+  }
   /// The patch at a place in a leaf.
   [[nodiscard]] PatchId patch(std::uint32_t leaf, std::size_t place) const {
     return patches_[tree_.leaf(leaf)[place]];
@@ -75,8 +81,9 @@ class SurfaceBvh {
     explicit Leaves(std::size_t leaf_count) : nodes_(leaf_count) {}
     ~Leaves();
     [[nodiscard]] const LeafNode* find(std::uint32_t i) const {
-      return nodes_[i].load(std::memory_order_acquire);
+      return static_cast<const LeafNode*>(nodes_[i].load(std::memory_order_acquire));
     }
+    [[nodiscard]] const std::atomic<kernels::NodeBoxes*>* nodes() const { return nodes_.data(); }
     const LeafNode& keep(std::uint32_t i, std::span<const PieceBuild> pieces);
     // Back to none; keeps their memory.
     void clear();
@@ -85,7 +92,7 @@ class SurfaceBvh {
    private:
     [[nodiscard]] LeafNode* unused();
 
-    std::vector<std::atomic<LeafNode*>> nodes_;
+    std::vector<std::atomic<kernels::NodeBoxes*>> nodes_;
     mutable std::mutex mutex_;
     std::vector<std::unique_ptr<LeafNode>> unused_;
     std::size_t count_ = 0;  // of those made, be they in use or not

@@ -210,9 +210,9 @@ class Winding {
     const Solid& solid = cache_.model().solid();
     const WideBvh* const tree = solid.filler_tree();
     if (tree == nullptr) return true;
-    std::vector<const TreeNode*> open{&tree->root()};
+    std::vector<const WideNode*> open{&tree->root()};
     while (!open.empty()) {
-      const TreeNode& node = *open.back();
+      const WideNode& node = *open.back();
       open.pop_back();
       WideNode::Distances gaps;
       node.distances(segment_, error_, 0, gaps);
