@@ -255,11 +255,9 @@ Collision apart_by(double gap) {
   return answer;
 }
 
-Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
-  const bool verdict_alone = options.witness == WitnessKind::none && !options.measure;
-  if (const double gap = root_gap(a, b, options.margin); gap > options.margin) {
-    return apart_by(verdict_alone ? gap : std::max(gap, outer_gap(a, b)));
-  }
+// Where the roots are not apart. By itself, so that far pairs pay nothing for it.
+[[gnu::noinline]] Collision search_trees(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
+                                         const Run& run, bool verdict_alone) {
   Collision answer = CollideSearch(a, b, options, run).run();
   if (answer.verdict == Verdict::separated && !verdict_alone) {
     answer.distance.lower = std::max(answer.distance.lower, std::min(outer_gap(a, b), answer.distance.upper));
@@ -268,6 +266,14 @@ Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& opti
                       (answer.verdict == Verdict::within && !options.prove_contact);
   if (options.solid && !proved) make_solid(a, b, run, answer);
   return answer;
+}
+
+Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run) {
+  const bool verdict_alone = options.witness == WitnessKind::none && !options.measure;
+  if (const double gap = root_gap(a, b, options.margin); gap > options.margin) {
+    return apart_by(verdict_alone ? gap : std::max(gap, outer_gap(a, b)));
+  }
+  return search_trees(a, b, options, run, verdict_alone);
 }
 
 // Brings the bounds of separated surfaces, which hold for their solids too, to within a factor of 2.
