@@ -32,6 +32,7 @@ LIBRARIES = {
     "patch": ("hwy/",),
     "bounds": ("hwy/",),
     "bvh": ("hwy/",),
+    "shape": ("hwy/",),
     "independence": ("flint/", "gmpxx.h"),
     "io": ("nlohmann/",),
 }

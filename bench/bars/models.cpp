@@ -4,6 +4,8 @@
 #include <random>
 
 #include <snug/evaluate.h>
+#include <snug/measure.h>
+#include <snug/surface.h>
 
 #include "bars.h"
 #include "peers.h"
@@ -43,7 +45,18 @@ void add_tight(const Model& model, const Options& options, BarTable& table) {
   group.add("surface and kinds known", static_cast<double>(surface.face_count()),
             [&] { return static_cast<double>(SurfaceBvh(surface, tight).bytes()); });
   const Times times = group.run().front();
-  table.at_most("tight model", "us a face", 2, model.name, 1e6 * times.median / times.items);
+  table.at_most("tight model", "us a face", 2.5, model.name, 1e6 * times.median / times.items);
+}
+
+// Area, volume, centroid and inertia within a percent.
+void add_measures(const Model& model, const Options& options, BarTable& table) {
+  const Surface surface(model.mesh, {.scheme = Scheme::loop});
+  const Run alone{.threads = 1};
+  Group group(model.name + ", measures to 1 %", "face", options);
+  group.add("kinds known", static_cast<double>(model.mesh.face_count()),
+            [&] { return measure(surface, {.relative = 0.01}, alone).area.upper; });
+  const Times times = group.run().front();
+  table.at_most("measures to 1 %", "us a face", 40, model.name, 1e6 * times.median / times.items);
 }
 
 }  // namespace
@@ -51,9 +64,13 @@ void add_tight(const Model& model, const Options& options, BarTable& table) {
 void model_bars(const std::vector<ModelPair>& pairs, const Options& options, BarTable& table) {
   // Large enough to be no mesh of some dozen faces refined.
   for (const ModelPair& pair : pairs) {
-    if (std::min(pair.a.mesh.face_count(), pair.b.mesh.face_count()) >= 600) add_memory(pair, options, table);
+    const auto [fewest, most] = std::minmax(pair.a.mesh.face_count(), pair.b.mesh.face_count());
+    if (fewest >= 600 && most <= 4'000) add_memory(pair, options, table);
   }
-  for (const Model* model : models_of(pairs)) add_tight(*model, options, table);
+  for (const Model* model : models_of(pairs)) {
+    add_tight(*model, options, table);
+    if (model->mesh.face_count() <= 2'000) add_measures(*model, options, table);
+  }
 }
 
 }  // namespace snug::bench

@@ -20,7 +20,7 @@ template <Domain domain, std::size_t A, std::size_t B = A>
 struct Bernstein {
   static_assert(domain == Domain::square || A == B);
   static constexpr bool triangle = domain == Domain::triangle;
-  static constexpr std::size_t count = triangle ? (A + 1) * (A + 2) / 2 : (A + 1) * (B + 1);
+  static constexpr std::size_t count = triangle ? (A + 1) * (A + 2) / 2 : (A + 1) * (B + 1), rows = B + 1;
 
   std::array<double, count> scaled{};
 

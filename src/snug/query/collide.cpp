@@ -256,8 +256,8 @@ Collision apart_by(double gap) {
 }
 
 // Where the roots are not apart. By itself, so that far pairs pay nothing for it.
-[[gnu::noinline]] Collision search_trees(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
-                                         const Run& run, bool verdict_alone) {
+[[gnu::noinline]] Collision search_trees(const PlacedBvh& a, const PlacedBvh& b,
+                                         const CollideOptions& options, const Run& run, bool verdict_alone) {
   Collision answer = CollideSearch(a, b, options, run).run();
   if (answer.verdict == Verdict::separated && !verdict_alone) {
     answer.distance.lower = std::max(answer.distance.lower, std::min(outer_gap(a, b), answer.distance.upper));

@@ -25,6 +25,8 @@ constexpr double default_relative = 1e-4;
 // Of a patch: pieces take a kilobyte each.
 constexpr std::uint64_t max_patch_splits = 100'000;
 constexpr int max_quadratic_rounds = 12;
+// Regular pieces that are integrated at once.
+constexpr std::size_t max_regular = 8;
 
 // A sum of many numbers, as in twice the precision.
 class BoundedSum {
@@ -79,12 +81,14 @@ class PatchMeasurer {
     result_ = {};
     pieces_.clear();
     tips_.clear();
+    regular_.clear();
     surface_.patch(p, patch_);
     middle_ = patch_.origin - origin_;
     Net whole{patch_.kind, {}, patch_.largest, patch_.error};
     for (const Vector3& point : patch_.points) whole.points.push_back({point.x, point.y, point.z, 0});
     open(std::move(whole));
     split_tips(goal.tips);
+    integrate_regular();
     narrow_area(goal.gap);
     return result_;
   }
@@ -142,12 +146,20 @@ class PatchMeasurer {
                    double largest, double error) {
     RegularPiece piece{surface_.rules().basis, {}, largest, error, middle_, unit_roundoff * max_abs(middle_)};
     for (std::size_t i = 0; i < lattice.size(); ++i) piece.points[i] = points[lattice[i]];
-    const FluxMoments moments = integrate(piece, pieces_);
-    for (std::size_t m = 0; m < moments.value.size(); ++m) {
-      double& sum = result_.moments.value[m];
-      sum += moments.value[m];
-      result_.moments.error[m] += moments.error[m] + unit_roundoff * std::fabs(sum);
+    regular_.push_back(piece);
+    if (regular_.size() == max_regular) integrate_regular();
+  }
+  void integrate_regular() {
+    std::array<FluxMoments, max_regular> sums;
+    integrate(regular_, sums, pieces_);
+    for (std::size_t i = 0; i < regular_.size(); ++i) {
+      for (std::size_t m = 0; m < 10; ++m) {
+        double& sum = result_.moments.value[m];
+        sum += sums[i].value[m];
+        result_.moments.error[m] += sums[i].error[m] + unit_roundoff * std::fabs(sum);
+      }
     }
+    regular_.clear();
   }
 
   // Upper bound of the area of a net's piece.
@@ -262,6 +274,7 @@ class PatchMeasurer {
   Patch patch_;
   Vector3 middle_;
   std::vector<Net> tips_;
+  std::vector<RegularPiece> regular_;  // that wait to be integrated
   std::vector<AreaPiece> pieces_;
   std::vector<std::pair<double, std::uint32_t>> heap_;
 };

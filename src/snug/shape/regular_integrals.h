@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include <snug/patch/net_kernels.h>
@@ -27,12 +28,14 @@ struct RegularPiece {
   double origin_error;                                    ///< likewise
 };
 
-/// The moments of a regular piece, whose integrands are polynomials; adds the polynomial x_u cross x_v to
-/// `normals`, in one part or in four.
+/// The moments of regular pieces, whose integrands are polynomials; adds the polynomials x_u cross x_v to
+/// `normals`, in one part or in four each.
 ///
 /// Guarantee: FluxMoments::error and the errors of the parts, rounding included.
-/// Cost:      3 to 7 microseconds.
+/// Requires:  pieces of one basis; a sum for each, of nothing before.
+/// Cost:      of eight, 0.5 to 1 microsecond each.
 /// Source:    derivations/measures.md, "Moments of a regular piece".
-[[nodiscard]] FluxMoments integrate(const RegularPiece& piece, std::vector<AreaPiece>& normals);
+void integrate(std::span<const RegularPiece> pieces, std::span<FluxMoments> sums,
+               std::vector<AreaPiece>& normals);
 
 }  // namespace snug
