@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -54,6 +55,24 @@ Pixels pixels_of(const Surface& surface, const Options& options) {
   return result;
 }
 
+// From every hit towards a light beside the eye, beginning some pixels off the surface.
+std::vector<Ray> shadows_of(const Surface& surface, const Pixels& pixels, std::span<const QuickHit> hits) {
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const double t = hits[i].t;
+    if (!std::isfinite(t)) continue;
+    const Vector3& d = pixels.directions[i];
+    const Point3 at{pixels.eye.x + t * d.x, pixels.eye.y + t * d.y, pixels.eye.z + t * d.z};
+    const Vector3 to_light{0.3, 0.8, 0.52};
+    rays.push_back({at, to_light, 4 * pixels.size, 4 * surface.size()});
+  }
+  return rays;
+}
+
+double sum(std::span<const std::uint8_t> blocked) {
+  return static_cast<double>(std::count(blocked.begin(), blocked.end(), std::uint8_t{1}));
+}
+
 double sum(std::span<const QuickHit> hits) {
   double total = 0;
   for (const QuickHit& hit : hits) total += std::isfinite(hit.t) ? hit.t : 0;
@@ -91,6 +110,10 @@ void measure_model(const std::string& file, const Options& options) {
     caster.cast(pixels.rays, hits, {.threads = 1});
     return sum(hits);
   });
+  group.add("snug, RayCaster, one at a time", count, [&] {
+    for (std::size_t i = 0; i < hits.size(); ++i) hits[i] = caster.cast(pixels.rays[i]);
+    return sum(hits);
+  });
   group.add("snug, ray(), proved", count, [&] {
     double total = 0;
     for (const RayHits& found : snug::ray(surface, pixels.rays, {.absolute = pixels.size}, {.threads = 1})) {
@@ -112,10 +135,32 @@ void measure_model(const std::string& file, const Options& options) {
   });
 #endif
   const std::vector<Times> times = group.run();
-  std::printf("# a proved hit takes %.1f times as long\n", ratio(times[1], times[0]));
+  std::printf("# a proved hit takes %.1f times as long\n", ratio(times[2], times[0]));
 #ifdef SNUG_BENCH_EMBREE
   std::printf("# rays a second over Embree's: %.2f, over those of eight at once %.2f\n",
-              ratio(times[2], times[0]), ratio(times[3], times[0]));
+              ratio(times[3], times[0]), ratio(times[4], times[0]));
+  std::printf("# one at a time, snug over Embree: %.2f\n", ratio(times[1], times[3]));
+  caster.cast(pixels.rays, hits, {.threads = 1});
+  const std::vector<Ray> shadows = shadows_of(surface, pixels, hits);
+  std::vector<std::uint8_t> blocked(shadows.size());
+  Group dark(name + ", a shadow ray a hit", "ray", options);
+  dark.add("snug, RayCaster", static_cast<double>(shadows.size()), [&] {
+    for (std::size_t i = 0; i < shadows.size(); ++i) blocked[i] = caster.blocked(shadows[i]);
+    return sum(blocked);
+  });
+  dark.add("snug, ray(), proved", static_cast<double>(shadows.size()), [&] {
+    double total = 0;
+    for (const RayHits& found : snug::ray(surface, shadows, {.query = RayQuery::any}, {.threads = 1}))
+      total += found.certain_hit();
+    return total;
+  });
+  dark.add("Embree", static_cast<double>(shadows.size()), [&] {
+    embree.blocked(shadows, blocked);
+    return sum(blocked);
+  });
+  const std::vector<Times> dark_times = dark.run();
+  std::printf("# shadows, snug over Embree: %.2f; proved over unproved: %.1f\n",
+              ratio(dark_times[0], dark_times[2]), ratio(dark_times[1], dark_times[0]));
   std::printf("# %zu triangles, %zu KiB; snug %zu KiB, %.3f of it\n", mesh.triangles.size(),
               embree.bytes() / 1024, caster.bytes() / 1024,
               static_cast<double>(caster.bytes()) / static_cast<double>(embree.bytes()));

@@ -144,6 +144,26 @@ void EmbreeMesh::first_hits(const Point3& eye, std::span<const Vector3> directio
   }
 }
 
+void EmbreeMesh::blocked(std::span<const Ray> rays, std::span<std::uint8_t> out) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto& [origin, direction, from, to] = rays[i];
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(origin.x);
+    ray.org_y = static_cast<float>(origin.y);
+    ray.org_z = static_cast<float>(origin.z);
+    ray.dir_x = static_cast<float>(direction.x);
+    ray.dir_y = static_cast<float>(direction.y);
+    ray.dir_z = static_cast<float>(direction.z);
+    ray.tnear = static_cast<float>(from);
+    ray.tfar = static_cast<float>(to);
+    ray.mask = ~0u;
+    rtcOccluded1(impl_->scene, &context, &ray);
+    out[i] = ray.tfar < 0;
+  }
+}
+
 void EmbreeMesh::first_hits_by_eights(const Point3& eye, std::span<const Vector3> directions,
                                       std::span<float> out) const {
   RTCIntersectContext context = coherent();

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+
+#include <snug/ray.h>
 
 #include "triangle_mesh.h"
 
@@ -25,6 +28,8 @@ class EmbreeMesh {
   void first_hits(const Point3& eye, std::span<const Vector3> directions, std::span<float> out) const;
   void first_hits_by_eights(const Point3& eye, std::span<const Vector3> directions,
                             std::span<float> out) const;
+  /// Which rays meet the mesh between `from` and infinity, in lengths of their directions: one call of rtcOccluded1 a ray.
+  void blocked(std::span<const Ray> rays, std::span<std::uint8_t> out) const;
   /// Memory of Embree, the mesh's buffers included.
   [[nodiscard]] std::size_t bytes() const;
 

@@ -71,8 +71,7 @@ struct RayHits {
 /// Errors:    InputError: (value) for a number that is not finite where it must be, a direction of length 0,
 ///            from > to, a precision that is negative or not finite; (refused) if no face of the mesh has a
 ///            limit surface; (unrepresentable) for a result that does not fit a double. Interrupted.
-/// Cost:      some microseconds; ten times that where a ray is aimed at an edge or a vertex
-///            (bench/results/rays.txt).
+/// Cost:      some microseconds; ten times that where a ray is aimed at an edge or a vertex (bench/results/rays.txt).
 /// Source:    derivations/rays.md.
 [[nodiscard]] SNUG_API RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options = {},
                                    const Run& run = {});
@@ -97,13 +96,14 @@ struct QuickHit {
 class SNUG_API RayCaster {
  public:
   /// `error`: in mesh units, such as the size of a pixel there.
-  /// Errors:    InputError: (value) for an error that is not finite and positive; (refused) if no face of the
-  ///            mesh has a limit surface. Interrupted.
+  /// Errors:    InputError: (value) unless the error is finite and positive; (refused) if no face has a limit surface. Interrupted.
   /// Cost:      a microsecond per patch, more if the error is small; 100 bytes per piece.
   RayCaster(const Surface& surface, double error, const Run& run = {});
 
   /// The first hit, in half a microsecond. Errors: those of ray() on rays.
   [[nodiscard]] QuickHit cast(const Ray& ray) const;
+  /// Is there a hit? Sooner than the first one is found: for shadows.
+  [[nodiscard]] bool blocked(const Ray& ray) const;
   /// The same for many rays, in the same order; hits do not depend on threads.
   void cast(std::span<const Ray> rays, std::span<QuickHit> out, const Run& run = {}) const;
 

@@ -67,6 +67,7 @@ TEST(ray_caster, finds_what_is_proved_to_be_hit) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const QuickHit alone = caster.cast(rays[i]);
       EXPECT_EQ(std::isfinite(alone.t), std::isfinite(quick[i].t)) << name << " " << i;
+      EXPECT_EQ(std::isfinite(alone.t), caster.blocked(rays[i])) << name << " " << i;
       hits += proved[i].certain_hit();
       missed += proved[i].certain_hit() && !std::isfinite(quick[i].t);
       if (!std::isfinite(quick[i].t)) continue;
@@ -84,6 +85,34 @@ TEST(ray_caster, finds_what_is_proved_to_be_hit) {
     EXPECT_LE(missed, 2 + hits / 500) << name;
     EXPECT_LE(others, 10 + hits / 50) << name;
   }
+}
+
+// From places on the surface to all sides, beginning a little away from it: as for shadows.
+TEST(ray_caster, tells_what_is_blocked_beside_the_surface) {
+  const Surface surface = load(model("bust.obj"));
+  const double tolerance = 1e-3 * surface.size();
+  const RayCaster caster(surface, tolerance);
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::size_t blocked = 0, free = 0, differ = 0;
+  for (const Ray& ray : rays_around(surface, 4000)) {
+    const QuickHit hit = caster.cast(ray);
+    if (!std::isfinite(hit.t)) continue;
+    Ray on{{ray.origin.x + hit.t * ray.direction.x, ray.origin.y + hit.t * ray.direction.y,
+            ray.origin.z + hit.t * ray.direction.z},
+           {share(random), share(random), share(random)}};
+    on.from = 4 * tolerance;
+    on.to = 4 * surface.size();
+    const bool found = caster.blocked(on);
+    EXPECT_EQ(found, std::isfinite(caster.cast(on).t));
+    const RayHits proved = snug::ray(surface, on, {.query = RayQuery::any});
+    blocked += found;
+    free += !found;
+    differ += proved.certain_hit() ? !found : proved.certain_miss() && found;
+  }
+  EXPECT_GT(blocked, 200u);
+  EXPECT_GT(free, 200u);
+  EXPECT_LE(differ, 1 + (blocked + free) / 100);
 }
 
 // Many patches and small pieces, whose names take more bits.
@@ -148,6 +177,10 @@ TEST(ray_caster, keeps_to_segments_and_refuses_what_is_none) {
   EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}, 2.1, 3}).t, 2.5, 1e-4);
   EXPECT_EQ(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}, 0, 1.9}).t, infinity);
   EXPECT_EQ(caster.cast({{0.3, 0.4, 5}, {0, 0, 2}}).t, infinity);
+  EXPECT_TRUE(caster.blocked({{0.3, 0.4, 5}, {0, 0, -2}, 2.1, 3}));
+  EXPECT_FALSE(caster.blocked({{0.3, 0.4, 5}, {0, 0, -2}, 0, 1.9}));
+  EXPECT_FALSE(caster.blocked({{0.3, 0.4, 5}, {0, 0, -2}, 2.1, 2.4}));
+  EXPECT_THROW(static_cast<void>(caster.blocked({{0, 0, 0}, {0, 0, 0}})), InputError);
   EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}}).normal.z, 1, 1e-6);
   EXPECT_THROW(static_cast<void>(caster.cast({{0, 0, 0}, {0, 0, 0}})), InputError);
   for (const double bad : {0.0, -1.0, infinity, std::numeric_limits<double>::quiet_NaN()}) {

@@ -415,7 +415,7 @@ bool Renderer::blocked(Point3 from, Vector3 direction, double reach) const {
   for (const SceneSurface& surface : scene_.surfaces) {
     if (scene_.materials[surface.material].opacity < 1) continue;
     const auto ray = ray_of(surface, scene_.cut, from, direction, 0, reach);
-    if (ray && std::isfinite(surface.surface->cast(*ray).t)) return true;
+    if (ray && surface.surface->blocked(*ray)) return true;
   }
   return false;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <snug/caster/caster_kernels.h>
+#include <snug/caster/open_nodes.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
@@ -106,26 +107,29 @@ HWY_INLINE void search(const Quadratic& q, V s, V r, V near_sq, V from, V to, Fo
 // Bezier points of a triangle as a ray sees them, and whether that is near their box.
 struct Seen {
   Vector p[6];
-  V low_x, low_y, high_x, high_y;
+  Vector low, high;
 
   // `point(k)`: relative to the ray's origin; `turn(v)`: across, across, along.
   template <class Point, class Turn>
   HWY_INLINE Seen(const Point& point, const Turn& turn) {
     const Tag d;
-    low_x = low_y = hn::Set(d, INFINITY);
-    high_x = high_y = hn::Set(d, -INFINITY);
+    low.x = low.y = low.z = hn::Set(d, INFINITY);
+    high.x = high.y = high.z = hn::Set(d, -INFINITY);
     for (std::size_t k = 0; k < 6; ++k) {
       p[k] = turn(point(k));
-      low_x = hn::Min(low_x, p[k].x);
-      low_y = hn::Min(low_y, p[k].y);
-      high_x = hn::Max(high_x, p[k].x);
-      high_y = hn::Max(high_y, p[k].y);
+      low = {hn::Min(low.x, p[k].x), hn::Min(low.y, p[k].y), hn::Min(low.z, p[k].z)};
+      high = {hn::Max(high.x, p[k].x), hn::Max(high.y, p[k].y), hn::Max(high.z, p[k].z)};
     }
   }
   [[nodiscard]] HWY_INLINE Mask within(V near) const {
     const V other = hn::Neg(near);
-    return hn::And(hn::And(hn::Le(low_x, near), hn::Ge(high_x, other)),
-                   hn::And(hn::Le(low_y, near), hn::Ge(high_y, other)));
+    return hn::And(hn::And(hn::Le(low.x, near), hn::Ge(high.x, other)),
+                   hn::And(hn::Le(low.y, near), hn::Ge(high.y, other)));
+  }
+  // The same, and between two places along the ray.
+  [[nodiscard]] HWY_INLINE Mask within(V near, V from, V to) const {
+    return hn::And(within(near),
+                   hn::And(hn::Ge(hn::Add(high.z, near), from), hn::Le(hn::Sub(low.z, near), to)));
   }
 };
 
@@ -192,14 +196,15 @@ std::uint32_t near_pieces(const CasterBlock& block, const CasterRay& ray, float 
   return result & block.taken;
 }
 
-CasterHit block(const CasterBlock& block, const CasterRay& ray, float from, float to) {
+// The first place of a block, or none.
+HWY_INLINE CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, float from, float to) {
   const Tag d;
   CasterHit hit;
   hit.t = to;
   for (std::size_t at = 0; at < caster_width; at += hn::Lanes(d)) {
     const Seen seen = seen_block(block, ray, at);
     const V near = hn::Set(d, block.error + ray.rounding);
-    const auto candidates = seen.within(near);
+    const auto candidates = seen.within(near, hn::Set(d, from), hn::Set(d, hit.t));
     const std::uint32_t taken = bits(candidates) & block.taken >> at;
     if (taken == 0) continue;
     const Found found = first_hits(seen, candidates, near, hn::Set(d, from), hn::Set(d, hit.t));
@@ -209,10 +214,36 @@ CasterHit block(const CasterBlock& block, const CasterRay& ray, float from, floa
     hn::Store(found.r, d, r);
     for (std::size_t l = 0; l < hn::Lanes(d); ++l) {
       if ((taken >> l & 1u) == 0 || !(t[l] < hit.t || (hit.place == caster_width && t[l] <= hit.t))) continue;
-      hit = {static_cast<std::uint32_t>(at + l), t[l], s[l], r[l]};
+      hit = {0, static_cast<std::uint32_t>(at + l), t[l], s[l], r[l]};
     }
   }
   return hit;
+}
+
+CasterHit walk(const CasterNode* nodes, const CasterBlock* blocks, const CasterRay& ray, float from, float to,
+               CasterQuery query) {
+  CasterHit best;
+  best.t = to;
+  OpenNodes open;
+  open.add(0, from);
+  while (!open.empty()) {
+    const OpenNodes::Item top = open.take();
+    if (top.enter > best.t) continue;
+    if ((top.name & caster_leaf_bit) == 0) {
+      const CasterNode& node = nodes[top.name];
+      float enter[caster_width];
+      const std::uint32_t met = boxes(node.boxes, ray, 0, from, best.t, enter) & node.taken;
+      open.add(node.children, met, enter);
+      continue;
+    }
+    const std::uint32_t block = top.name & ~caster_leaf_bit;
+    CasterHit hit = hit_block(blocks[block], ray, from, best.t);
+    if (hit.place == caster_width) continue;
+    hit.block = block;
+    best = hit;
+    if (query == CasterQuery::any) break;
+  }
+  return best;
 }
 
 std::uint32_t piece(const CasterBlock& block, std::size_t place, const CasterRays& rays, float rounding,
@@ -236,10 +267,10 @@ std::uint32_t piece(const CasterBlock& block, std::size_t place, const CasterRay
       return Vector{dot(w, rows(rays.across[0])), dot(w, rows(rays.across[1])), dot(w, rows(rays.direction))};
     };
     const Seen seen(point, turn);
-    const auto candidates = seen.within(near);
+    const V first = hn::Load(d, from + at), last = hn::Load(d, to + at);
+    const auto candidates = seen.within(near, first, last);
     if (bits(candidates) == 0) continue;
-    const V last = hn::Load(d, to + at);
-    const Found found = first_hits(seen, candidates, near, hn::Load(d, from + at), last);
+    const Found found = first_hits(seen, candidates, near, first, last);
     const auto nearer = hn::Lt(found.t, hn::Set(d, INFINITY));
     hn::Store(hn::IfThenElse(nearer, found.t, last), d, to + at);
     hn::Store(hn::IfThenElse(nearer, found.s, hn::Load(d, u + at)), d, u + at);
@@ -258,7 +289,7 @@ namespace snug::kernels {
 
 HWY_EXPORT(boxes);
 HWY_EXPORT(near_pieces);
-HWY_EXPORT(block);
+HWY_EXPORT(walk);
 HWY_EXPORT(piece);
 
 std::uint32_t enter_boxes(const CasterBoxes& boxes_of_node, const CasterRay& ray, float grown, float from,
@@ -270,8 +301,9 @@ std::uint32_t near_ray(const CasterBlock& triangles, const CasterRay& ray, float
   return HWY_DYNAMIC_DISPATCH(near_pieces)(triangles, ray, grown);
 }
 
-CasterHit hit_block(const CasterBlock& triangles, const CasterRay& ray, float from, float to) {
-  return HWY_DYNAMIC_DISPATCH(block)(triangles, ray, from, to);
+CasterHit cast(const CasterNode* nodes, const CasterBlock* blocks, const CasterRay& ray, float from, float to,
+               CasterQuery query) {
+  return HWY_DYNAMIC_DISPATCH(walk)(nodes, blocks, ray, from, to, query);
 }
 
 std::uint32_t hit_piece(const CasterBlock& triangles, std::size_t place, const CasterRays& rays,

@@ -44,13 +44,25 @@ struct CasterBlock {
 /// A bit for each triangle that is within the error and `grown` of the ray.
 std::uint32_t near_ray(const CasterBlock& block, const CasterRay& ray, float grown);
 
+/// A node of a tree: children are other nodes, or blocks with caster_leaf_bit; a bit for each that there is.
+struct CasterNode {
+  CasterBoxes boxes;
+  std::array<std::uint32_t, caster_width> children;
+  std::uint32_t taken;
+};
+inline constexpr std::uint32_t caster_leaf_bit = 0x80000000u;
+
 /// Where a ray meets a triangle; `place` is which of a block.
 struct CasterHit {
+  std::uint32_t block = 0;
   std::uint32_t place = caster_width;  ///< caster_width: none
   float t = 0, u = 0, v = 0;
 };
-/// The first place, of `from` to `to` along the ray, where it comes within the error of a triangle.
-CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, float from, float to);
+/// Which hit is looked for: the first, or any.
+enum class CasterQuery : std::uint8_t { nearest, any };
+/// A place, of `from` to `to` along the ray, where it comes within the error of a triangle of the tree.
+CasterHit cast(const CasterNode* nodes, const CasterBlock* blocks, const CasterRay& ray, float from, float to,
+               CasterQuery query);
 /// One triangle of a block and several rays: where these come within its error, if not behind `to`, which becomes
 /// nearer. Returns a bit for each ray that does so.
 std::uint32_t hit_piece(const CasterBlock& block, std::size_t place, const CasterRays& rays, float rounding,

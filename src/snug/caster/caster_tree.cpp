@@ -1,4 +1,5 @@
 #include <snug/caster/caster_tree.h>
+#include <snug/caster/open_nodes.h>
 
 #include <algorithm>
 #include <array>
@@ -122,7 +123,7 @@ struct CasterTree::Builder {
     divide(begin, end, caster_width, unit, ends);
     name = static_cast<std::uint32_t>(tree.nodes_.size());
     tree.nodes_.emplace_back();
-    Node node{};
+    kernels::CasterNode node{};
     Box3 all;
     for (std::size_t i = 0; i < caster_width; ++i) {
       Box3 box;
@@ -141,7 +142,7 @@ struct CasterTree::Builder {
   }
 
   Box3 fill_block(std::size_t begin, std::size_t end, std::uint32_t& name) {
-    name = static_cast<std::uint32_t>(tree.blocks_.size()) | leaf_bit;
+    name = static_cast<std::uint32_t>(tree.blocks_.size()) | kernels::caster_leaf_bit;
     kernels::CasterBlock block{};
     Box3 all, points;
     double error = 0;
@@ -197,7 +198,7 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
   // A root of one block is a node with one child.
   if (pieces.size() <= caster_width) {
     nodes_.emplace_back();
-    Node node{};
+    kernels::CasterNode node{};
     for (std::size_t k = 0; k < 3; ++k) {
       node.boxes.lower[k].fill(INFINITY);
       node.boxes.upper[k].fill(-INFINITY);
@@ -219,7 +220,7 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
 }
 
 std::size_t CasterTree::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + blocks_.capacity() * sizeof(kernels::CasterBlock) +
+  return nodes_.capacity() * sizeof(kernels::CasterNode) + blocks_.capacity() * sizeof(kernels::CasterBlock) +
          places_.bytes();
 }
 
@@ -253,32 +254,6 @@ std::array<Vector3, 2> across(const Vector3& d) {
   return {Vector3{1 + sign * d.x * d.x * a, sign * b, -sign * d.x}, Vector3{b, sign + d.y * d.y * a, -d.y}};
 }
 
-// Nodes still to be visited, the nearest last.
-class OpenNodes {
- public:
-  struct Item {
-    std::uint32_t name;
-    float enter;
-  };
-  [[nodiscard]] bool empty() const { return count_ == 0; }
-  Item take() { return items_[--count_]; }
-  void add(std::uint32_t name, float enter) { items_[count_++] = {name, enter}; }
-  // Adds children, sorted.
-  void add(std::span<const std::uint32_t> names, std::uint32_t which, std::span<const float> enter) {
-    const std::size_t first = count_;
-    for (; which != 0; which &= which - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(which));
-      std::size_t at = count_++;
-      for (; at > first && items_[at - 1].enter < enter[i]; --at) items_[at] = items_[at - 1];
-      items_[at] = {names[i], enter[i]};
-    }
-  }
-
- private:
-  std::array<Item, 128> items_;  // a tree of 2^31 leaves has eleven levels
-  std::size_t count_ = 0;
-};
-
 }  // namespace
 
 kernels::CasterRay CasterTree::seen(const Approach& approach) const {
@@ -300,16 +275,16 @@ kernels::CasterRay CasterTree::seen(const Approach& approach) const {
 template <class Visit>
 void CasterTree::walk(const kernels::CasterRay& ray, float grown, float first, float last,
                       const Visit& visit) const {
-  OpenNodes open;
+  kernels::OpenNodes open;
   open.add(0, first);
   while (!open.empty()) {
-    const OpenNodes::Item top = open.take();
+    const kernels::OpenNodes::Item top = open.take();
     if (top.enter > last) continue;
-    if ((top.name & leaf_bit) != 0) {
-      last = visit(top.name & ~leaf_bit);
+    if ((top.name & kernels::caster_leaf_bit) != 0) {
+      last = visit(top.name & ~kernels::caster_leaf_bit);
       continue;
     }
-    const Node& node = nodes_[top.name];
+    const kernels::CasterNode& node = nodes_[top.name];
     std::array<float, caster_width> enter;
     const std::uint32_t met = kernels::enter_boxes(node.boxes, ray, grown, first, last, enter.data());
     open.add(node.children, met & node.taken, enter);
@@ -345,8 +320,7 @@ struct CasterTree::Beam {
                                                u.data(), v.data());
         for (; met != 0; met &= met - 1) {
           const auto i = static_cast<std::size_t>(std::countr_zero(met));
-          hits[i] = {place, to[i], u[i], v[i]};
-          blocks[i] = block;
+          hits[i] = {block, place, to[i], u[i], v[i]};
         }
       }
       return last();
@@ -361,26 +335,22 @@ struct CasterTree::Beam {
   float first, grown;
   alignas(32) std::array<float, caster_width> from, to, u{}, v{};
   std::array<kernels::CasterHit, caster_width> hits;
-  std::array<std::uint32_t, caster_width> blocks{};
 };
 
 QuickHit CasterTree::cast(const Ray& ray) const {
   const Approach approach(*this, ray);
   if (approach.passes) return {};
-  const kernels::CasterRay one = seen(approach);
-  kernels::CasterHit best;
-  std::uint32_t best_block = 0;
-  float last = approach.to;
-  walk(one, 0, approach.from, last, [&](std::uint32_t b) {
-    const kernels::CasterHit hit = kernels::hit_block(blocks_[b], one, approach.from, last);
-    if (hit.place != caster_width) {
-      best = hit;
-      best_block = b;
-      last = hit.t;
-    }
-    return last;
-  });
-  return best.place == caster_width ? QuickHit{} : finished(approach, best_block, best);
+  const kernels::CasterHit hit = kernels::cast(nodes_.data(), blocks_.data(), seen(approach), approach.from,
+                                               approach.to, kernels::CasterQuery::nearest);
+  return hit.place == caster_width ? QuickHit{} : finished(approach, hit);
+}
+
+bool CasterTree::blocked(const Ray& ray) const {
+  const Approach approach(*this, ray);
+  if (approach.passes) return false;
+  return kernels::cast(nodes_.data(), blocks_.data(), seen(approach), approach.from, approach.to,
+                       kernels::CasterQuery::any)
+             .place != caster_width;
 }
 
 void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const {
@@ -411,15 +381,14 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const 
     beam.search();
     for (std::size_t i = 0; i < group.size(); ++i) {
       if (beam.hits[i].place != caster_width) {
-        out[which[i]] = finished(group[i], beam.blocks[i], beam.hits[i]);
+        out[which[i]] = finished(group[i], beam.hits[i]);
       }
     }
   }
 }
 
-QuickHit CasterTree::finished(const Approach& approach, std::uint32_t block,
-                              const kernels::CasterHit& hit) const {
-  const PieceName place = places_[block * caster_width + hit.place];
+QuickHit CasterTree::finished(const Approach& approach, const kernels::CasterHit& hit) const {
+  const PieceName place = places_[hit.block * caster_width + hit.place];
   const TriangleParameter at{static_cast<double>(hit.u), static_cast<double>(hit.v)};
   QuickHit answer;
   answer.t = approach.lengths.to_parameter(static_cast<double>(hit.t) + approach.skipped);
@@ -427,7 +396,7 @@ QuickHit CasterTree::finished(const Approach& approach, std::uint32_t block,
   answer.patch = surface_->place(place.patch);
   answer.level = place.path.level();
   // Of the quadratic.
-  const auto& net = blocks_[block].net;
+  const auto& net = blocks_[hit.block].net;
   const auto difference = [&](std::size_t from, std::size_t to) {
     const auto coordinate = [&](std::size_t axis) {
       return static_cast<double>(net[to][axis][hit.place] - net[from][axis][hit.place]);

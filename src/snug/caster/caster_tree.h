@@ -24,17 +24,12 @@ class CasterTree {
 
   /// Requires:  a ray that ray.h allows.
   [[nodiscard]] QuickHit cast(const Ray& ray) const;
+  [[nodiscard]] bool blocked(const Ray& ray) const;
   /// The same for many; those that follow one another and lie close together are searched at once.
   void cast(std::span<const Ray> rays, std::span<QuickHit> out) const;
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  static constexpr std::uint32_t leaf_bit = 0x80000000u;
-  struct Node {
-    kernels::CasterBoxes boxes;
-    std::array<std::uint32_t, kernels::caster_width> children;  // nodes, or blocks with leaf_bit
-    std::uint32_t taken;                                        // a bit for each
-  };
   /// Which pieces of which patches there are: 4 bytes each where few and shallow, else 8.
   class Places {
    public:
@@ -57,11 +52,10 @@ class CasterTree {
   [[nodiscard]] kernels::CasterRay seen(const Approach& approach) const;
   template <class Visit>
   void walk(const kernels::CasterRay& ray, float grown, float first, float last, const Visit& visit) const;
-  [[nodiscard]] QuickHit finished(const Approach& approach, std::uint32_t block,
-                                  const kernels::CasterHit& hit) const;
+  [[nodiscard]] QuickHit finished(const Approach& approach, const kernels::CasterHit& hit) const;
 
   const LimitSurface* surface_;
-  std::vector<Node> nodes_;  // the root first
+  std::vector<kernels::CasterNode> nodes_;  // the root first
   std::vector<kernels::CasterBlock> blocks_;
   Places places_;  // caster_width a block
   Point3 centre_;

@@ -22,6 +22,11 @@ QuickHit RayCaster::cast(const Ray& ray) const {
   return tree_->cast(ray);
 }
 
+bool RayCaster::blocked(const Ray& ray) const {
+  require_ray(ray);
+  return tree_->blocked(ray);
+}
+
 void RayCaster::cast(std::span<const Ray> rays, std::span<QuickHit> out, const Run& run) const {
   require_value(out.size() == rays.size(), "RayCaster: one hit for each ray");
   // A block is searched in groups that begin with its first ray: hits do not depend on threads.
