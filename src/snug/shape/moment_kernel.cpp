@@ -50,21 +50,22 @@ HWY_INLINE void add_product(const Lanes<P>& p, const Lanes<Q>& q, double factor,
   }
 }
 
-// As snug::means_with().
-template <class P, class Q>
+// As snug::means_with(), from row j on; sums of a row stay in registers.
+template <class P, class Q, std::size_t j = 0>
 HWY_INLINE void means_with(const Lanes<Q>& q, V* result) {
   using Out = ProductOf<P, Q>;
-  for (std::size_t j = 0; j < P::rows; ++j) {
-    for (std::size_t i = 0; i < P::width(j); ++i) {
-      V sum = set(0);
-      for (std::size_t l = 0; l < Q::rows; ++l) {
-        const double* const weights = means<Out>.data() + Out::place(i, j + l);
-        const V* const factor = q.scaled + Q::place(0, l);
-        for (std::size_t k = 0; k < Q::width(l); ++k) sum = plus(sum, times(factor[k], set(weights[k])));
-      }
-      result[P::place(i, j)] = sum;
+  constexpr std::size_t width = P::width(j);
+  V sums[width];
+  for (V& sum : sums) sum = set(0);
+  const V* factor = q.scaled;
+  for (std::size_t l = 0; l < Q::rows; ++l) {
+    const double* weights = means<Out>.data() + Out::place(0, j + l);
+    for (std::size_t k = 0; k < Q::width(l); ++k, ++factor, ++weights) {
+      for (std::size_t i = 0; i < width; ++i) sums[i] = plus(sums[i], times(*factor, set(weights[i])));
     }
   }
+  std::copy(sums, sums + width, result + P::place(0, j));
+  if constexpr (j + 1 < P::rows) means_with<P, Q, j + 1>(q, result);
 }
 
 template <class P>

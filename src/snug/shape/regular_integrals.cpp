@@ -148,13 +148,12 @@ void integrate_box_spline(std::size_t number, const RegularPiece& piece,
   BezierPoints<Point> points;
   for (std::size_t k = 0; k < Point::count; ++k) {
     const Stencils::Row row = rows.row(k);
-    for (std::size_t a = 0; a < 3; ++a) {
-      double sum_of_row = 0;
-      for (std::size_t i = 0; i < row.sources.size(); ++i) {
-        sum_of_row += row.weights[i] * piece.points[row.sources[i]][a];
-      }
-      points[a][k] = sum_of_row;
+    kernels::NetPoint sum{};
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      const kernels::NetPoint& from = piece.points[row.sources[i]];
+      for (std::size_t a = 0; a < 4; ++a) sum[a] += row.weights[i] * from[a];
     }
+    for (std::size_t a = 0; a < 3; ++a) points[a][k] = sum[a];
   }
   integrals.add(number, piece, points);
 }
