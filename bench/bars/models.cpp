@@ -64,7 +64,7 @@ void add_measures(const Model& model, const Options& options, BarTable& table) {
 void model_bars(const std::vector<ModelPair>& pairs, const Options& options, BarTable& table) {
   // Large enough to be no mesh of some dozen faces refined.
   for (const ModelPair& pair : pairs) {
-    const auto [fewest, most] = std::minmax(pair.a.mesh.face_count(), pair.b.mesh.face_count());
+    const auto [fewest, most] = std::minmax({pair.a.mesh.face_count(), pair.b.mesh.face_count()});
     if (fewest >= 600 && most <= 4'000) add_memory(pair, options, table);
   }
   for (const Model* model : models_of(pairs)) {

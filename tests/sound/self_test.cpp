@@ -111,6 +111,7 @@ TEST(self, verdicts_are_those_of_refined_meshes) {
   const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1));
   std::mt19937_64 random(1);
   std::map<std::string, int> counts;
+  int draw = 0;
   for (const Shape& shape : shapes()) {
     const testing::ClosedMesh& closed = shape.mesh;
     const bool triangles = std::all_of(closed.faces.begin(), closed.faces.end(),
@@ -118,11 +119,11 @@ TEST(self, verdicts_are_those_of_refined_meshes) {
     for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
       if (scheme == Scheme::loop && !triangles) continue;
       for (const double amount : {0.0, 0.3, 0.8, 1.5, 3.0}) {
-        for (int trial = 0; trial < 2 * trials; ++trial) {
+        for (int trial = 0; trial < trials; ++trial) {
           oracle::TaggedMesh mesh = shaken(shape, amount, random);
-          const bool tagged = trial % 2 == 1 && (scheme == Scheme::loop || scheme == Scheme::catmark);
-          if (trial % 2 == 1 && !tagged) continue;
-          if (tagged) add_tags(mesh, random);
+          // Every second mesh of a scheme that has tags.
+          if ((scheme == Scheme::loop || scheme == Scheme::catmark) && ++draw % 2 == 0)
+            add_tags(mesh, random);
           const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {},
                                                  {.max_splits = 20'000});
           const std::string name = closed.name + " " + name_of(scheme) + " " + std::to_string(amount);
@@ -137,8 +138,8 @@ TEST(self, verdicts_are_those_of_refined_meshes) {
   }
   for (const auto& [what, count] : counts) RecordProperty(what, count);
   for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
-  EXPECT_GT(counts["clear, twin does not"], 30 * trials);
-  EXPECT_GT(counts["intersecting, twin crosses"], 30 * trials);
+  EXPECT_GT(counts["clear, twin does not"], 20 * trials);
+  EXPECT_GT(counts["intersecting, twin crosses"], 20 * trials);
 }
 
 // A flat fan around vertex 0, inside or on the border, three rings more around it, and which edges of it run along

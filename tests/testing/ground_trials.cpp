@@ -146,13 +146,13 @@ Valence valence_of(const Choices& choices, Dice& dice) {
   const bool plain = choice<Tags>(choices, Factor::tags) == Tags::none,
              rows = choice<BoundMethod>(choices, Factor::sets) == BoundMethod::rows;
   const bool primal = !traits_of(scheme_of(choices)).dual;
-  return {choice<std::uint8_t>(choices, Factor::valence) == 1, !rows                       ? 200U
+  return {choice<std::uint8_t>(choices, Factor::valence) == 1, !rows                       ? 100U
                                                                : !plain                    ? 230U
                                                                : dice.one_in(30) && primal ? 512U
                                                                                            : 360U};
 }
 Id high_valence(const Valence& valence, Dice& dice) {
-  return valence.most == 512 ? 512 : 200 + dice.below(valence.most - 199);
+  return valence.most == 512 || valence.most == 100 ? valence.most : 200 + dice.below(valence.most - 199);
 }
 
 /// Some faces cut into triangles, so that triangles, quads and others meet.
@@ -410,7 +410,7 @@ std::string name_of_value(std::size_t factor, std::size_t value) {
       {"manifold", "non-manifold edge", "non-manifold vertex"},
       {"no tags", "sharp", "semi-sharp", "chaikin", "dart", "corner"},
       {"plain triangles", "smooth triangles"},
-      {"small valence", "valence 200+"},
+      {"small valence", "valence 100+"},
       {"loop", "catmark", "doo-sabin", "midedge"},
       {"rows", "tables"},
   }};
@@ -532,7 +532,7 @@ std::string missing(const GroundMesh& made, const Choices& choices) {
   const auto count = [&](auto test) { return std::count_if(uses.begin(), uses.end(), test); };
   const bool open = count([](const auto&use) { return use.second == 1; }) > 0,
              odd = count([](const auto&use) { return use.second > 2; }) > 0;
-  const bool many = *std::max_element(faces.begin(), faces.end()) >= 200;
+  const bool many = *std::max_element(faces.begin(), faces.end()) >= 100;
   const auto connection = choice<Connection>(choices, Factor::connection);
   const auto tags = choice<Tags>(choices, Factor::tags);
   if (open != (choice<Border>(choices, Factor::border) != Border::closed)) return "border";

@@ -66,7 +66,7 @@ struct GroundSide {
   double size = 0;  ///< longest side of the used vertices' box
   /// Of a solid: closed, without holes, and its edges have two faces.
   [[nodiscard]] bool is_solid() const;
-  [[nodiscard]] bool has_many() const;  ///< faces around a vertex: 200 or more
+  [[nodiscard]] bool has_many() const;  ///< faces around a vertex: 200 or more, with tables 100
   [[nodiscard]] BoundMethod bounds() const;
 };
 

@@ -139,6 +139,8 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
       enlarged(16 * unit_roundoff * placed + 64 * unit_roundoff * own + 8 * defects * radii) + 0x1p-500;
   const double gap = apart - radii - doubt;
   if (gap > enough) return gap;
+  // Of surfaces that lie in each other so far boxes are seldom apart.
+  if (enough < INFINITY && gap < -0.75 * std::min(ball_a.radius, ball_b.radius)) return gap;
   const double boxes = gap_of_boxes(PlacedRoot(a), PlacedRoot(b), defects, enough);
   return std::isfinite(boxes) ? boxes : -INFINITY;
 }
