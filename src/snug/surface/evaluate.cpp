@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -62,13 +63,15 @@ std::vector<std::size_t> grouped_by_patch(const LimitSurface& surface, std::span
 // Writes a position in single precision; returns its error.
 double write_rounded(const BoundedPoint& point, float* out) {
   double rounding = 0;
+  bool finite = true;
   for (std::size_t a = 0; a < 3; ++a) {
     out[a] = static_cast<float>(point.position[a]);
-    if (!std::isfinite(out[a])) {
-      throw InputError(InputProblem::unrepresentable,
-                       "a result does not fit a float: the coordinates are too large; scale the mesh down");
-    }
+    finite &= std::fabs(out[a]) <= std::numeric_limits<float>::max();
     rounding = std::max(rounding, std::fabs(static_cast<double>(out[a]) - point.position[a]));
+  }
+  if (!finite) {
+    throw InputError(InputProblem::unrepresentable,
+                     "a result does not fit a float: the coordinates are too large; scale the mesh down");
   }
   return enlarged(point.error + rounding);
 }
@@ -76,14 +79,13 @@ double write_rounded(const BoundedPoint& point, float* out) {
 // A thread's evaluator, with some points of one face, or quad, and their numbers.
 struct Worker {
   explicit Worker(const LimitSurface& surface) : evaluator(surface) {}
-  [[nodiscard]] std::span<const Place> places() const { return {at.data(), count}; }
 
   static constexpr std::size_t most = 64;
   SurfaceEvaluator evaluator;
-  std::size_t count = 0;
-  std::array<Place, most> at;
+  std::span<const Place> places;
   std::array<std::size_t, most> numbers;
-  std::array<BoundedPoint, most> points;  // room for answers
+  std::array<Place, most> gathered;       // room for places that do not follow each other
+  std::array<BoundedPoint, most> points;  // and for answers
 };
 
 // Calls visit(worker) with some points until all have had their turn.
@@ -94,26 +96,29 @@ void evaluate_all(const LimitSurface& surface, std::span<const Place> at, int th
   parallel_for_with(
       at.size(), at.size() < worth_a_thread ? 1 : threads, [&] { return Worker(surface); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
-        worker.count = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::size_t number = order.empty() ? i : order[i];
-          if (worker.count == Worker::most || (worker.count > 0 && !on_one_patch(worker.at[0], at[number]))) {
-            visit(worker);
-            worker.count = 0;
+        const auto number = [&](std::size_t i) { return order.empty() ? i : order[i]; };
+        for (std::size_t first = begin; first < end;) {
+          const Place& place = at[number(first)];
+          std::size_t count = 0;
+          for (std::size_t i = first; i < end && count < Worker::most; ++i) {
+            const std::size_t n = number(i);
+            if (!on_one_patch(place, at[n])) break;
+            if (!order.empty()) worker.gathered[count] = at[n];
+            worker.numbers[count++] = n;
           }
-          worker.numbers[worker.count] = number;
-          worker.at[worker.count++] = at[number];
+          worker.places = order.empty() ? at.subspan(first, count) : std::span(worker.gathered).first(count);
+          visit(worker);
+          first += count;
         }
-        visit(worker);
       });
 }
 
 // Both return the largest error of a position.
 double write_positions(Worker& worker, const FloatPoints& out) {
-  const std::span<BoundedPoint> points(worker.points.data(), worker.count);
-  worker.evaluator.positions(worker.places(), points);
+  const std::span<BoundedPoint> points = std::span(worker.points).first(worker.places.size());
+  worker.evaluator.positions(worker.places, points);
   double largest = 0;
-  for (std::size_t k = 0; k < worker.count; ++k) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
     largest = std::max(largest, write_rounded(points[k], out.positions.data() + 3 * worker.numbers[k]));
   }
   return largest;
@@ -121,9 +126,9 @@ double write_positions(Worker& worker, const FloatPoints& out) {
 
 double write_with_normals(Worker& worker, const FloatPoints& out) {
   double largest = 0;
-  for (std::size_t k = 0; k < worker.count; ++k) {
+  for (std::size_t k = 0; k < worker.places.size(); ++k) {
     const std::size_t first = 3 * worker.numbers[k];
-    const SurfacePoint point = worker.evaluator(worker.at[k]);
+    const SurfacePoint point = worker.evaluator(worker.places[k]);
     largest = std::max(largest, write_rounded({point.point, point.error}, out.positions.data() + first));
     const Vector3 normal = point.normal.value_or(Vector3{});
     for (std::size_t a = 0; a < 3; ++a) out.normals[first + a] = static_cast<float>(normal[a]);
@@ -163,7 +168,9 @@ SurfacePoint evaluate(const LimitSurface& surface, const Place& at) { return Sur
 std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const Place> at, int threads) {
   std::vector<SurfacePoint> points(at.size());
   evaluate_all(surface, at, threads, [&](Worker& worker) {
-    for (std::size_t k = 0; k < worker.count; ++k) points[worker.numbers[k]] = worker.evaluator(worker.at[k]);
+    for (std::size_t k = 0; k < worker.places.size(); ++k) {
+      points[worker.numbers[k]] = worker.evaluator(worker.places[k]);
+    }
   });
   return points;
 }
