@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <support/error.h>
 #include <testing/cad_parts.h>
+#include <testing/instruction_sets.h>
 #include <testing/places.h>
 
 namespace snug::ray_caster_test {
@@ -153,6 +154,50 @@ TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
   }
   EXPECT_LE(worst, 0x1p-14);
   EXPECT_GT(worst, 0);
+}
+
+TEST(ray_caster, hits_are_the_same_on_every_instruction_set) {
+  const testing::EachInstructionSet sets;
+  for (const char* name : {"bust.obj", "bracket.obj"}) {
+    const Surface surface = load(model(name));
+    const RayCaster caster(surface, 1e-3 * surface.size());
+    const std::vector<Ray> rays = rays_around(surface, 20'000);
+    std::vector<QuickHit> first, found(rays.size());
+    sets.run([&](const char* set) {
+      caster.cast(rays, found, {.threads = 1});
+      if (first.empty()) first = found;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(found[i].t, first[i].t) << set << ", " << name << ' ' << i;
+        ASSERT_EQ(found[i].normal, first[i].normal) << set << ", " << name << ' ' << i;
+        ASSERT_EQ(std::isfinite(caster.cast(rays[i]).t), std::isfinite(found[i].t))
+            << set << ", " << name << ' ' << i;
+      }
+    });
+  }
+}
+
+// The same line, seen from before the surface and from far behind it.
+TEST(ray_caster, goes_back_to_a_surface_behind_the_origin) {
+  const Surface surface = load(model("bust.obj"));
+  const RayCaster caster(surface, 1e-3 * surface.size());
+  std::size_t hits = 0;
+  for (const Ray& ray : rays_around(surface, 1000)) {
+    const QuickHit ahead = caster.cast(ray);
+    for (const double far : {10.0, 1e4}) {
+      const Vector3& d = ray.direction;
+      Ray behind{{ray.origin.x + far * d.x, ray.origin.y + far * d.y, ray.origin.z + far * d.z}, d};
+      behind.from = -2 * far;
+      const QuickHit found = caster.cast(behind);
+      EXPECT_EQ(caster.blocked(behind), std::isfinite(found.t));
+      if (!std::isfinite(ahead.t) || !std::isfinite(found.t)) continue;
+      ++hits;
+      const Point3 p = evaluate(surface, found.at).point;
+      ASSERT_LE(std::hypot(behind.origin.x + found.t * d.x - p.x, behind.origin.y + found.t * d.y - p.y,
+                           behind.origin.z + found.t * d.z - p.z),
+                1.001e-3 * surface.size());
+    }
+  }
+  EXPECT_GT(hits, 300u);
 }
 
 TEST(ray_caster, hits_do_not_depend_on_threads) {

@@ -178,10 +178,13 @@ HWY_INLINE Found first_hits(const Seen& seen, Mask candidates, V near, V from, V
     least = hn::Min(least, turns[k]);
     most = hn::Max(most, turns[k]);
   }
-  if (bits(hn::And(candidates, hn::And(hn::Le(least, zero), hn::Ge(most, zero)))) != 0) {
-    search(q, zero, zero, none, from, to, found);
-    search(q, one, zero, none, from, to, found);
-    search(q, zero, one, none, from, to, found);
+  const auto turns_away = hn::And(candidates, hn::And(hn::Le(least, zero), hn::Ge(most, zero)));
+  if (bits(turns_away) != 0) {
+    // No other lane, so that it makes no difference which ones a vector has.
+    const V of_these = hn::IfThenElse(turns_away, none, hn::Set(d, -1));
+    search(q, zero, zero, of_these, from, to, found);
+    search(q, one, zero, of_these, from, to, found);
+    search(q, zero, one, of_these, from, to, found);
   }
   return found;
 }

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// One ray against eight boxes or eight quadratic triangles, in single precision, on the widest vectors that the
-/// processor has. The same bits on every instruction set.
+/// One ray against a tree of boxes and quadratic triangles, eight at once, or against some of them; in single precision, on the
+/// widest vectors that the processor has. The same bits on every instruction set.
 namespace snug::kernels {
 
 /// Boxes of a node, and quadratic triangles of a block.

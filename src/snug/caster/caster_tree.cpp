@@ -231,7 +231,8 @@ struct CasterTree::Approach {
     const Point3 origin = tree.surface_->scale().apply(ray.origin);
     const Vector3 ahead = tree.centre_ - origin;
     const double middle = dot(direction, ahead);
-    skipped = std::max(0.0, middle - tree.radius_);
+    // Forwards or backwards.
+    skipped = std::max(lengths.to_scaled(ray.from), middle - tree.radius_);
     start = origin + skipped * direction;
     from = static_cast<float>(std::max(lengths.to_scaled(ray.from) - skipped, -1e30));
     to = static_cast<float>(std::min(lengths.to_scaled(ray.to) - skipped, 2.01 * tree.radius_));

@@ -50,6 +50,7 @@ class CasterTree {
   struct Approach;
   struct Beam;
   [[nodiscard]] kernels::CasterRay seen(const Approach& approach) const;
+  // Of a beam; one ray has a kernel of its own, kernels::cast().
   template <class Visit>
   void walk(const kernels::CasterRay& ray, float grown, float first, float last, const Visit& visit) const;
   [[nodiscard]] QuickHit finished(const Approach& approach, const kernels::CasterHit& hit) const;
