@@ -174,6 +174,23 @@ TEST(root_gap, is_at_most_the_distance_of_the_hulls_whatever_is_enough) {
   EXPECT_GT(by_boxes, testing::fewer(300));
 }
 
+// Rods and plates side by side, whose balls lie in each other: boxes tell at once, whatever is enough.
+TEST(root_gap, of_rods_and_plates_side_by_side_is_that_of_their_boxes) {
+  for (const double width : {0.1, 0.9}) {
+    ControlMesh mesh;
+    const Vector3 half{1, width, 0.1};
+    for (int v = 0; v < 24; ++v) {
+      const auto along = [&](std::size_t k) { return (v >> k & 1) != 0 ? half[k] : -half[k]; };
+      mesh.points.push_back({along(0), along(1), along(2)});
+    }
+    for (std::uint32_t v = 0; v < 24; v += 3) {
+      mesh.add_face(std::array{VertexId(v), VertexId(v + 1), VertexId(v + 2)});
+    }
+    Body a(mesh, Motion()), b(mesh, Motion().with_offset({0, 0, 0.25}));
+    EXPECT_GT(root_gap(a.at(), b.at(), 0), 0.049) << width;
+  }
+}
+
 // Boxes face to face and balls corner to corner, so near that roundings and what motions lack of rigidity decide.
 TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
   std::mt19937_64 random(24);

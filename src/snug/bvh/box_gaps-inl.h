@@ -1,4 +1,5 @@
-// Gaps of eight boxes from another one, for kernels of nodes: read again for each instruction set, no #pragma once.
+// Gaps of eight boxes from another one, for kernels of nodes: read again for each instruction set, no #pragma once, after
+// snug/geometry/vector_code-inl.h.
 #include <algorithm>
 #include <cmath>
 

@@ -80,7 +80,6 @@ HWY_INLINE Deepest compare(const WalkedTree& tree, const NodeBoxes& node, const 
 }
 
 Walk::Halt walk_on(Walk& walk) {
-  // The larger one is opened, so that no large box is compared with many small ones.
   const float ratio = walk.trees[0].view.scale;
   WalkedPair* top = walk.waiting + walk.waiting_count;
   WalkedPair* const room = walk.waiting + walk.capacity - node_width;
@@ -100,6 +99,7 @@ Walk::Halt walk_on(Walk& walk) {
       walk.at_hand = pair;
       return halt(Walk::Halt::patches);
     }
+    // The larger one is opened, so that no large box is compared with many small ones.
     const bool first =
         b.is_patch() || (!a.is_patch() && a.boxes->sizes[a.place] >= ratio * b.boxes->sizes[b.place]);
     const std::size_t side = first ? 0 : 1;

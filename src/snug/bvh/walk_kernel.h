@@ -27,7 +27,7 @@ struct WalkedTree {
   const NodeBoxes* nodes = nullptr;                 ///< by name
   const std::atomic<bool>* made = nullptr;          ///< of them
   const std::atomic<NodeBoxes*>* leaves = nullptr;  ///< by number; null where not made
-  TreeView view;                                    ///< of the other tree
+  TreeView view{};                                  ///< of the other tree
   float distance = 0;  ///< boxes farther apart than this are passed over, in its own units
   float to_query = 1;  ///< the query's units, rounded down, over its own
 };
@@ -48,7 +48,7 @@ struct Walk {
   WalkedPair at_hand;
   bool has_pair = false;  ///< else at_hand is to be taken from the others
   WalkedPair* waiting = nullptr;
-  std::size_t waiting_count = 0, capacity = 0;
+  std::size_t waiting_count = 0, capacity = 0;  ///< room for node_width pairs at least
   float others = INFINITY;  ///< least gap of boxes that were passed over, in the query's units
   std::uint64_t box_tests = 0;
   /// Why it halted.
@@ -58,8 +58,8 @@ struct Walk {
     not_made,  ///< the node or leaf `name` of tree `side` is to be made
     full,      ///< `waiting` is to be made larger
   };
-  std::size_t side = 0;
-  std::uint32_t name = 0;
+  std::size_t side = 0;    ///< of what is not made
+  std::uint32_t name = 0;  ///< likewise
 };
 /// Goes on with a walk until it halts: depth first, what overlaps most deeply first, the larger box of a pair opened first.
 Walk::Halt go_on(Walk& walk);

@@ -85,4 +85,7 @@ class WideNode : public kernels::NodeBoxes {
   void extents(const Vector3& direction, Distances& out) const;
 };
 
+// Walks step through nodes by their boxes.
+static_assert(sizeof(WideNode) == sizeof(kernels::NodeBoxes));
+
 }  // namespace snug

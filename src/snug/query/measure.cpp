@@ -11,6 +11,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/search/solid.h>
 #include <snug/shape/corner_asymptotics.h>
+#include <snug/shape/moment_kernel.h>
 #include <snug/shape/regular_integrals.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
@@ -25,8 +26,8 @@ constexpr double default_relative = 1e-4;
 // Of a patch: pieces take a kilobyte each.
 constexpr std::uint64_t max_patch_splits = 100'000;
 constexpr int max_quadratic_rounds = 12;
-// Regular pieces that are integrated at once.
-constexpr std::size_t max_regular = 8;
+// Regular pieces that are integrated at once: most have one part.
+constexpr std::size_t max_regular = kernels::moment_lanes;
 
 // A sum of many numbers, as in twice the precision.
 class BoundedSum {

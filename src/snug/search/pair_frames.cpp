@@ -120,6 +120,12 @@ double gap_of_boxes(const PlacedRoot& a, const PlacedRoot& b, double defects, do
   return widest;
 }
 
+// No rod and no plate, for which the ball says little.
+bool is_compact(const SurfaceBvh& model) {
+  const Vector3& half = model.box().half;
+  return std::min({half.x, half.y, half.z}) > 0.25 * model.ball().radius;
+}
+
 }  // namespace
 
 double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
@@ -139,8 +145,9 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
       enlarged(16 * unit_roundoff * placed + 64 * unit_roundoff * own + 8 * defects * radii) + 0x1p-500;
   const double gap = apart - radii - doubt;
   if (gap > enough) return gap;
-  // Of surfaces that lie in each other so far boxes are seldom apart.
-  if (enough < INFINITY && gap < -0.75 * std::min(ball_a.radius, ball_b.radius)) return gap;
+  // Compact boxes of balls that lie in each other so far are seldom apart.
+  const bool deep = gap < -0.75 * std::min(ball_a.radius, ball_b.radius);
+  if (enough < INFINITY && deep && is_compact(a.model) && is_compact(b.model)) return gap;
   const double boxes = gap_of_boxes(PlacedRoot(a), PlacedRoot(b), defects, enough);
   return std::isfinite(boxes) ? boxes : -INFINITY;
 }

@@ -40,7 +40,8 @@ class PairFrames {
 };
 
 /// Lower bound, in mesh units, of the distance of two placed surfaces, by balls and then by boxes around them.
-/// No better one is looked for than `enough`. Not positive where none shows, or where doubles do not reach.
+/// No better one is looked for than `enough`, nor, with a finite one, where balls lie deep in each other and boxes are no rods or
+/// plates. Not positive where none shows, or where doubles do not reach.
 /// Cost:      5 to 30 ns.
 /// Source:    derivations/boxes.md, "Whole models".
 [[nodiscard]] double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough);

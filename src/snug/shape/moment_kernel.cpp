@@ -18,8 +18,6 @@ using V = hn::Vec<Tag>;
 
 // Roundings of a product in the integrands, and of a mean.
 constexpr std::size_t product_roundings = 128, mean_roundings = 512;
-// Bound of all underflow in the computations on a part; sizes are between 1e-30 and 4.
-constexpr double tiny = 0x1p-900;
 
 HWY_INLINE V set(double x) { return hn::Set(Tag(), x); }
 HWY_INLINE V times(V a, V b) { return hn::Mul(a, b); }
@@ -127,7 +125,7 @@ struct Part {
     }
     normal_error = plus(up(plus(times(times(set(4), slope_error), plus(largest, slope_error)),
                                 times(set(gamma_bound(product_roundings) * 2), times(largest, largest)))),
-                        set(tiny));
+                        set(moment_underflow));
     largest_normal = normal_error;
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t k = 0; k < Normal::count; ++k) {
@@ -201,7 +199,7 @@ struct Part {
       const V by_points = m == 0 ? set(0) : m < 4 ? x_error : times(times(set(2), reach), x_error);
       store(times(area, value[m]), parts.value[m]);
       store(plus(times(area, plus(times(power, plus(flux_error, rounded)), times(by_points, largest_flux))),
-                 set(tiny)),
+                 set(moment_underflow)),
             parts.error[m]);
     }
   }

@@ -9,6 +9,8 @@
 namespace snug::kernels {
 
 inline constexpr std::size_t moment_lanes = 8;
+/// Bound of all underflow in the computations on a part; sizes are between 1e-30 and 4.
+inline constexpr double moment_underflow = 0x1p-900;
 
 /// Up to eight parts: what is known of them, and what comes out.
 struct MomentParts {

@@ -16,9 +16,6 @@ namespace {
 // Roundings of a Bezier point.
 constexpr std::size_t point_roundings = 40;
 
-// Bound of all underflow in the computations on a piece; sizes are between 1e-30 and 4.
-constexpr double tiny = 0x1p-900;
-
 // Bezier points of one polynomial part, by axis and relative to the piece's own origin.
 template <class P>
 using BezierPoints = std::array<std::array<double, P::count>, 3>;
@@ -38,12 +35,14 @@ class PartIntegrals {
       for (std::size_t k = 0; k < Point::count; ++k) parts_.points[a][k][count_] = points[a][k];
       parts_.origin[a][count_] = piece.origin[a];
     }
-    parts_.point_error[count_] = enlarged(piece.error + gamma_bound(point_roundings) * piece.largest) + tiny;
+    parts_.point_error[count_] =
+        enlarged(piece.error + gamma_bound(point_roundings) * piece.largest) + kernels::moment_underflow;
     parts_.origin_error[count_] = piece.origin_error;
     numbers_[count_++] = number;
     if (count_ == kernels::moment_lanes) finish();
   }
   void finish() {
+    if (count_ == 0) return;
     kernels::integrate(domain, degree, count_, parts_);
     for (std::size_t lane = 0; lane < count_; ++lane) {
       FluxMoments& sum = sums_[numbers_[lane]];
