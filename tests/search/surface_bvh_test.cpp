@@ -22,7 +22,7 @@ LimitSurface some_surface() {
 void expect_same(const LeafNode& x, const LeafNode& y) {
   ASSERT_EQ(x.count(), y.count());
   EXPECT_EQ(x.origin(), y.origin());
-  EXPECT_EQ(x.can_split, y.can_split);
+  EXPECT_EQ(x.names, y.names);
   EXPECT_EQ(std::memcmp(x.bounds.data(), y.bounds.data(), sizeof(x.bounds)), 0);
   WideNode::Distances of_x, of_y;
   x.distances(Point3{3, -2, 1}, 0, of_x);

@@ -52,7 +52,7 @@ struct SeenBox {
 };
 /// Names of children: another node, or a leaf with this bit set.
 inline constexpr std::uint32_t leaf_bit = 0x80000000u;
-/// The boxes of a node, the point they are relative to, and what they are called in a tree.
+/// The boxes of a node, the point they are relative to, and what they are called in a tree, or by the owner of its leaves.
 struct alignas(64) NodeBoxes {
   float rows[obb_rows * node_width] = {};
   float sizes[node_width] = {};

@@ -105,10 +105,7 @@ class PieceCache {
   /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
   [[nodiscard]] static bool can_open(const Node& node) {
     if (node.kind == Node::Kind::tree) return true;
-    const std::uint8_t can_split = node.kind == Node::Kind::patch
-                                       ? static_cast<const LeafNode*>(node.boxes)->can_split
-                                       : static_cast<const SplitNode*>(node.boxes)->can_split;
-    return (can_split >> node.place & 1u) != 0;
+    return node.boxes->names[node.place] != 0;
   }
 
   /// Children of a node, made if need be.

@@ -143,11 +143,15 @@ PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod met
 template <std::size_t N>
 PieceLeaf<N>::PieceLeaf(std::span<const PieceBuild> pieces) {
   std::array<Obb, N> boxes;
-  for (std::size_t i = 0; i < pieces.size(); ++i) boxes[i] = pieces[i].box;
-  static_cast<WideNode&>(*this) = WideNode(std::span(boxes).first(pieces.size()));
+  std::array<std::uint32_t, N> can_split;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    boxes[i] = pieces[i].box;
+    can_split[i] = pieces[i].can_split ? 1 : 0;
+  }
+  static_cast<WideNode&>(*this) =
+      WideNode(std::span(boxes).first(pieces.size()), std::span(can_split).first(pieces.size()));
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     bounds[i] = PieceBounds(pieces[i].offset, pieces[i].quadratic, origin());
-    if (pieces[i].can_split) can_split |= static_cast<std::uint8_t>(1u << i);
   }
 }
 

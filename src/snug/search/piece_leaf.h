@@ -87,14 +87,13 @@ struct PieceBuild {
 /// The piece, for boxes above its own.
 [[nodiscard]] FittedSet fitted_set(const PieceBuild& piece);
 
-/// A node of pieces: boxes around up to N of them, and their records.
+/// A node of pieces: boxes around up to N of them, whose names are 1 where a piece can be split, else 0; and their records.
 template <std::size_t N>
 struct PieceLeaf : WideNode {
   PieceLeaf() = default;
   /// Requires:  1 to N pieces.
   explicit PieceLeaf(std::span<const PieceBuild> pieces);
   std::array<PieceBounds, N> bounds;
-  std::uint8_t can_split = 0;  ///< a bit each
 };
 /// The patches of a leaf of a tree.
 using LeafNode = PieceLeaf<WideNode::width>;
