@@ -52,20 +52,13 @@ HWY_INLINE V computed(V gap) {
   return hn::IfThenElse(hn::Lt(gap, hn::Set(d, 1e30F)), gap, hn::Set(d, -INFINITY));
 }
 
-HWY_INLINE std::uint32_t bits(hn::Mask<Tag> mask) {
-  const Tag d;
-  std::uint8_t result = 0;
-  hn::StoreMaskBits(d, mask, &result);
-  return result & ((1u << hn::Lanes(d)) - 1);
-}
-
 // The lanes from `at` on, and what they add to `near`.
 HWY_INLINE void store(V gap, float prune_distance, std::size_t at, float* out, Near& near) {
   const Tag d;
   gap = computed(gap);
   hn::StoreU(gap, d, out + at);
   const auto beyond = hn::Gt(gap, hn::Set(d, prune_distance));
-  near.places |= bits(hn::Not(beyond)) << at;
+  near.places |= bits(d, hn::Not(beyond)) << at;
   near.others = std::min(near.others,
                          hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(beyond, gap, hn::Set(d, INFINITY)))));
 }

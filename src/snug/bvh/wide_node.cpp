@@ -67,7 +67,8 @@ float TreeView::doubt(float size) const {
 }
 
 WideNode::WideNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes) {
-  SNUG_EXPECT(!boxes.empty() && boxes.size() <= width && of_boxes.size() <= width);
+  SNUG_EXPECT(!boxes.empty() && boxes.size() <= width &&
+              (of_boxes.empty() || of_boxes.size() == boxes.size()));
   std::copy(of_boxes.begin(), of_boxes.end(), names.begin());
   box_count = static_cast<std::uint32_t>(boxes.size());
   const Point3 origin = boxes[0].centre;

@@ -21,13 +21,6 @@ constexpr unsigned steps = 4;
 // Of a box seen from a ray: what roundings do to a quotient.
 constexpr float wider = 1 + 16 * 0x1p-24F;
 
-HWY_INLINE std::uint32_t bits(Mask mask) {
-  const Tag d;
-  std::uint8_t result = 0;
-  hn::StoreMaskBits(d, mask, &result);
-  return result & ((1u << hn::Lanes(d)) - 1);
-}
-
 std::uint32_t boxes(const CasterBoxes& boxes, const CasterRay& ray, float grown, float from, float to,
                     float* enter) {
   const Tag d;
@@ -44,7 +37,7 @@ std::uint32_t boxes(const CasterBoxes& boxes, const CasterRay& ray, float grown,
       end = hn::Min(end, hn::Mul(hn::Max(one, two), hn::Set(d, wider)));
     }
     hn::StoreU(begin, d, enter + at);
-    met |= bits(hn::Le(begin, end)) << at;
+    met |= bits(d, hn::Le(begin, end)) << at;
   }
   return met;
 }
@@ -179,7 +172,7 @@ HWY_INLINE Found first_hits(const Seen& seen, Mask candidates, V near, V from, V
     most = hn::Max(most, turns[k]);
   }
   const auto turns_away = hn::And(candidates, hn::And(hn::Le(least, zero), hn::Ge(most, zero)));
-  if (bits(turns_away) != 0) {
+  if (bits(d, turns_away) != 0) {
     // No other lane, so that it makes no difference which ones a vector has.
     const V of_these = hn::IfThenElse(turns_away, none, hn::Set(d, -1));
     search(q, zero, zero, of_these, from, to, found);
@@ -194,7 +187,7 @@ std::uint32_t near_pieces(const CasterBlock& block, const CasterRay& ray, float 
   std::uint32_t result = 0;
   for (std::size_t at = 0; at < caster_width; at += hn::Lanes(d)) {
     const V near = hn::Set(d, block.error + ray.rounding + grown);
-    result |= bits(seen_block(block, ray, at).within(near)) << at;
+    result |= bits(d, seen_block(block, ray, at).within(near)) << at;
   }
   return result & block.taken;
 }
@@ -208,7 +201,7 @@ HWY_INLINE CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, f
     const Seen seen = seen_block(block, ray, at);
     const V near = hn::Set(d, block.error + ray.rounding);
     const auto candidates = seen.within(near, hn::Set(d, from), hn::Set(d, hit.t));
-    const std::uint32_t taken = bits(candidates) & block.taken >> at;
+    const std::uint32_t taken = bits(d, candidates) & block.taken >> at;
     if (taken == 0) continue;
     const Found found = first_hits(seen, candidates, near, hn::Set(d, from), hn::Set(d, hit.t));
     HWY_ALIGN float t[caster_width], s[caster_width], r[caster_width];
@@ -272,13 +265,13 @@ std::uint32_t piece(const CasterBlock& block, std::size_t place, const CasterRay
     const Seen seen(point, turn);
     const V first = hn::Load(d, from + at), last = hn::Load(d, to + at);
     const auto candidates = seen.within(near, first, last);
-    if (bits(candidates) == 0) continue;
+    if (bits(d, candidates) == 0) continue;
     const Found found = first_hits(seen, candidates, near, first, last);
     const auto nearer = hn::Lt(found.t, hn::Set(d, INFINITY));
     hn::Store(hn::IfThenElse(nearer, found.t, last), d, to + at);
     hn::Store(hn::IfThenElse(nearer, found.s, hn::Load(d, u + at)), d, u + at);
     hn::Store(hn::IfThenElse(nearer, found.r, hn::Load(d, v + at)), d, v + at);
-    met |= bits(nearer) << at;
+    met |= bits(d, nearer) << at;
   }
   return met;
 }

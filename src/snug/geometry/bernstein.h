@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 
 /// Polynomials on a triangle or a square, and their products and means.
 namespace snug {
@@ -34,12 +33,6 @@ struct Bernstein {
     for (std::size_t j = 0; j <= B; ++j) {
       for (std::size_t i = 0; i < width(j); ++i) visit(i, j);
     }
-  }
-  /// Calls visit.operator()<j>() for j from 0 to B.
-  template <class Visit>
-  static void for_each_row(const Visit& visit) {
-    [&]<std::size_t... j>(std::index_sequence<j...>) { (visit.template operator()<j>(), ...); }
-    (std::make_index_sequence<B + 1>());
   }
 };
 
@@ -123,28 +116,6 @@ template <class P, class Q>
   ProductOf<P, Q> out;
   add_product(p, q, 1, out);
   return out;
-}
-
-/// Means of q times each basis function of P: mean(p q) is the sum of p.scaled
-/// times these.
-template <class P, class Q>
-[[nodiscard]] std::array<double, P::count> means_with(const Q& q) {
-  using Out = ProductOf<P, Q>;
-  std::array<double, P::count> result;
-  const auto set_row = [&]<std::size_t... i>(std::size_t j, std::index_sequence<i...>) {
-    std::array<double, sizeof...(i)> sums{};
-    const double* factor = q.scaled.data();
-    for (std::size_t l = 0; factor < q.scaled.data() + Q::count; ++l) {
-      const double* weights = means<Out>.data() + Out::place(0, j + l);
-      for (std::size_t k = 0; k < Q::width(l); ++k, ++factor, ++weights) {
-        ((sums[i] += *factor * weights[i]), ...);
-      }
-    }
-    ((result[P::place(i, j)] = sums[i]), ...);
-  };
-  // Each row by code of its own, with sums in registers.
-  P::for_each_row([&]<std::size_t j>() { set_row(j, std::make_index_sequence<P::width(j)>()); });
-  return result;
 }
 
 }  // namespace snug

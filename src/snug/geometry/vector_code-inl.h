@@ -9,6 +9,8 @@
 // After it, as the library wants it.
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 #if defined(SNUG_GEOMETRY_VECTOR_CODE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SNUG_GEOMETRY_VECTOR_CODE_INL_H
 #undef SNUG_GEOMETRY_VECTOR_CODE_INL_H
@@ -47,6 +49,14 @@ template <class V>
 HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+// A bit for each lane of a mask, of at most eight lanes.
+template <class D>
+HWY_INLINE std::uint32_t bits(D d, hn::Mask<D> mask) {
+  std::uint8_t result = 0;
+  hn::StoreMaskBits(d, mask, &result);
+  return result & ((1u << hn::Lanes(d)) - 1);
 }
 
 }  // namespace snug::kernels::HWY_NAMESPACE

@@ -26,14 +26,14 @@ HWY_INLINE V up(V x) { return plus(times(x, set(1 + 0x1p-42)), set(underflow_err
 
 // A polynomial a lane, scaled as Bernstein is.
 template <class P>
-struct Lanes {
+struct Polynomials {
   V scaled[P::count];
 };
 
 // As snug::add_product().
 template <class P, class Q>
-HWY_INLINE void add_product(const Lanes<P>& p, const Lanes<Q>& q, double factor,
-                            Lanes<ProductOf<P, Q>>& out) {
+HWY_INLINE void add_product(const Polynomials<P>& p, const Polynomials<Q>& q, double factor,
+                            Polynomials<ProductOf<P, Q>>& out) {
   using Out = ProductOf<P, Q>;
   constexpr std::size_t rows_of_p = P::rows, rows_of_q = Q::rows;
   for (std::size_t j = 0; j < rows_of_p; ++j) {
@@ -48,9 +48,9 @@ HWY_INLINE void add_product(const Lanes<P>& p, const Lanes<Q>& q, double factor,
   }
 }
 
-// As snug::means_with(), from row j on; sums of a row stay in registers.
+// Means of q times each basis function of P, from row j on; sums of a row stay in registers.
 template <class P, class Q, std::size_t j = 0>
-HWY_INLINE void means_with(const Lanes<Q>& q, V* result) {
+HWY_INLINE void means_with(const Polynomials<Q>& q, V* result) {
   using Out = ProductOf<P, Q>;
   constexpr std::size_t width = P::width(j);
   V sums[width];
@@ -67,7 +67,7 @@ HWY_INLINE void means_with(const Lanes<Q>& q, V* result) {
 }
 
 template <class P>
-HWY_INLINE void clear(Lanes<P>& p) {
+HWY_INLINE void clear(Polynomials<P>& p) {
   for (V& x : p.scaled) x = set(0);
 }
 
@@ -83,7 +83,7 @@ struct Part {
 
   MomentParts& parts;
   std::size_t at;  // the first lane
-  Lanes<Normal> normal[3];
+  Polynomials<Normal> normal[3];
   V point_error, normal_error, largest_normal;
 
   HWY_INLINE V load(const MomentParts::Lanes& lanes) const { return hn::LoadU(Tag(), lanes + at); }
@@ -91,7 +91,7 @@ struct Part {
 
   // Derivatives, and their largest Bezier coefficient.
   template <class Derivative>
-  HWY_INLINE void along(std::size_t axis, std::size_t by_i, std::size_t by_j, Lanes<Derivative>& out,
+  HWY_INLINE void along(std::size_t axis, std::size_t by_i, std::size_t by_j, Polynomials<Derivative>& out,
                         V& largest) const {
     for (std::size_t j = 0; j < Derivative::rows; ++j) {
       for (std::size_t i = 0; i < Derivative::width(j); ++i) {
@@ -106,8 +106,8 @@ struct Part {
   }
 
   HWY_INLINE void find_normal() {
-    Lanes<AlongU> u[3];
-    Lanes<AlongV> v[3];
+    Polynomials<AlongU> u[3];
+    Polynomials<AlongV> v[3];
     V largest = set(0);
     for (std::size_t a = 0; a < 3; ++a) {
       along<AlongU>(a, 1, 0, u[a], largest);
@@ -139,7 +139,7 @@ struct Part {
   }
 
   HWY_INLINE void find_moments() const {
-    Lanes<Point> x[3];
+    Polynomials<Point> x[3];
     V reach = set(0);
     for (std::size_t a = 0; a < 3; ++a) {
       const V origin = load(parts.origin[a]);
@@ -151,7 +151,7 @@ struct Part {
     }
     const V x_error = plus(plus(point_error, load(parts.origin_error)), times(set(2 * unit_roundoff), reach));
     reach = plus(reach, x_error);
-    Lanes<Flux> flux;
+    Polynomials<Flux> flux;
     clear(flux);
     for (std::size_t a = 0; a < 3; ++a) add_product(x[a], normal[a], 1, flux);
     const V largest_flux = times(times(set(3), reach), largest_normal);
