@@ -126,5 +126,31 @@ TEST(near_pairs, pass_over_no_pair_of_patches_that_is_near) {
   EXPECT_LT(handed_out, all / 4);
 }
 
+// More wait than the walk has room for at first: every pair comes, and once.
+TEST(near_pairs, come_once_each_where_many_wait) {
+  const auto mesh = [] {
+    oracle::TwinMesh made = oracle::meshes::icosahedron();
+    for (int level = 0; level < 4; ++level) made = oracle::meshes::quartered(made);
+    return made;
+  }();
+  const LimitSurface surface = testing::surface_of(mesh);
+  const SurfaceBvh a(surface, {.threads = 1}), b(surface, {.threads = 1});
+  PieceCache cache_a(a), cache_b(b);
+  PairFrames frames({a, cache_a, Motion()}, {b, cache_b, Motion()});
+  SearchStats stats;
+  NearPairs near(frames, stats, frames.length_up(3));
+  ASSERT_TRUE(near.usable());
+  const std::size_t count = surface.patch_count();
+  std::vector<bool> found(count * count);
+  std::size_t pairs = 0;
+  for (NodePair pair; near.next(pair); ++pairs) {
+    const std::size_t i = a.patch(pair.nodes[0].owner, pair.nodes[0].place).index(),
+                      j = b.patch(pair.nodes[1].owner, pair.nodes[1].place).index();
+    ASSERT_FALSE(found[i * count + j]) << i << ' ' << j;
+    found[i * count + j] = true;
+  }
+  EXPECT_EQ(pairs, count * count);
+}
+
 }  // namespace
 }  // namespace snug::near_pairs_test

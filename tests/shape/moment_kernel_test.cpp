@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <utility>
 
 namespace snug::moment_kernel_test {
 namespace {
@@ -66,6 +67,31 @@ struct Part {
     for (std::size_t a = 0; a < 3; ++a) result[0][a] += parts.origin[a][lane];
     return result;
   }
+  [[nodiscard]] Point normal(long double u, long double v) const {
+    const auto [x, by_u, by_v] = at(u, v);
+    Point result;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      result[k] = by_u[l] * by_v[m] - by_u[m] * by_v[l];
+    }
+    return result;
+  }
+  // The same by the coefficients that came out, which are scaled.
+  [[nodiscard]] Point normal_of(const MomentParts& found, long double u, long double v) const {
+    const bool triangle = domain == Domain::triangle;
+    const std::size_t n = triangle ? 2 * degree - 2 : 2 * degree - 1;
+    Point result{};
+    std::size_t k = 0;
+    for (std::size_t j = 0; j <= n; ++j) {
+      for (std::size_t i = 0; i + (triangle ? j : 0) <= n; ++i, ++k) {
+        const long double powers =
+            triangle ? power(u, i) * power(v, j) * power(1 - u - v, n - i - j)
+                     : power(u, i) * power(1 - u, n - i) * power(v, j) * power(1 - v, n - j);
+        for (std::size_t a = 0; a < 3; ++a) result[a] += powers * found.normal[a][k][lane];
+      }
+    }
+    return result;
+  }
   // By a rule of so many points a direction that is exact for these polynomials.
   [[nodiscard]] std::array<long double, 10> moments() const {
     constexpr std::size_t n = 12;
@@ -91,12 +117,9 @@ struct Part {
         const bool triangle = domain == Domain::triangle;
         const long double u = nodes[a], v = triangle ? (1 - u) * nodes[b] : nodes[b];
         const long double weight = weights[a] * weights[b] * (triangle ? 1 - u : 1);
-        const auto [x, by_u, by_v] = at(u, v);
+        const Point x = at(u, v)[0], n_here = normal(u, v);
         long double q = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-          q += x[k] * (by_u[l] * by_v[m] - by_u[m] * by_v[l]);
-        }
+        for (std::size_t k = 0; k < 3; ++k) q += x[k] * n_here[k];
         q *= weight;
         sum[0] += q;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -126,8 +149,19 @@ TEST(moment_kernel, holds_the_integrals_of_every_degree_and_is_the_same_on_every
           for (auto& lanes : axis) fill(lanes, count % 2 == 0 ? 1 : 1e-3);
         }
         for (auto& lanes : given->origin) fill(lanes, 2);
-        std::fill(given->point_error, given->point_error + moment_lanes, 0.0);
-        std::fill(given->origin_error, given->origin_error + moment_lanes, 0.0);
+        // Points and origins that are off by as much as is said, or by nothing.
+        const double size = count % 2 == 0 ? 1 : 1e-3, off_point = count % 3 == 0 ? 0 : 1e-7 * size,
+                     off_origin = count % 4 == 0 ? 0 : 1e-7;
+        std::fill(given->point_error, given->point_error + moment_lanes, off_point);
+        std::fill(given->origin_error, given->origin_error + moment_lanes, off_origin);
+        const auto meant = std::make_unique<MomentParts>(*given);
+        const auto move = [&](MomentParts::Lanes& lanes, double by) {
+          for (double& x : lanes) x += (random() % 2 == 0 ? 0.999 : -0.999) * by;
+        };
+        for (auto& axis : meant->points) {
+          for (auto& lanes : axis) move(lanes, off_point);
+        }
+        for (auto& lanes : meant->origin) move(lanes, off_origin);
         std::optional<MomentParts> first;
         sets.run([&](const char* name) {
           MomentParts found = *given;
@@ -143,12 +177,20 @@ TEST(moment_kernel, holds_the_integrals_of_every_degree_and_is_the_same_on_every
           }
         });
         for (std::size_t lane = 0; lane < count; ++lane) {
-          const auto exact = Part{domain, degree, *given, lane}.moments();
+          const Part part{domain, degree, *meant, lane};
+          const auto exact = part.moments();
           for (std::size_t m = 0; m < 10; ++m) {
             const double value = first->value[m][lane], error = first->error[m][lane];
             const auto off = static_cast<double>(std::fabs(static_cast<long double>(value) - exact[m]));
             EXPECT_LE(off, error + 1e-16 * std::fabs(value)) << degree << ' ' << m;
-            EXPECT_LE(error, 1e-9) << degree << ' ' << m;
+            EXPECT_LE(error, 1e-9 + 2e4 * (off_point + off_origin)) << degree << ' ' << m;
+          }
+          for (const auto& [u, v] : {std::pair{0.0L, 0.0L}, {0.2L, 0.3L}, {0.5L, 0.5L}, {0.1L, 0.85L}}) {
+            const Point exact_normal = part.normal(u, v), normal = part.normal_of(*first, u, v);
+            for (std::size_t a = 0; a < 3; ++a) {
+              EXPECT_LE(std::fabs(normal[a] - exact_normal[a]), first->normal_error[lane]) << degree;
+              EXPECT_LE(std::fabs(exact_normal[a]), first->largest_normal[lane]) << degree;
+            }
           }
         }
       }

@@ -1,6 +1,6 @@
 // The promises of collide, distance and closest for every scheme, tag and rule, each with each other one:
 // boundary rules, holes, edges and vertices that are not manifold, creases, Chaikin, darts, corners, smooth
-// triangles, valences above 200, rows and tables; against a twin that refines by itself.
+// triangles, valences above 200 (with tables 100), rows and tables; against a twin that refines by itself.
 //
 //   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_test --gtest_filter=ground.answers_are_true
 //
@@ -65,7 +65,7 @@ class Checks {
     timed("collide", [&] { check_collide(); });
     timed("distance", [&] { check_distance(); });
     const std::size_t s = trial.random() % 2;
-    // Its nearest pieces may be all around a vertex of 200 faces, and the tables of so many kinds take a minute.
+    // Its nearest pieces may be all around a vertex of a hundred faces, and the tables of so many kinds take long.
     if (!has_many_kinds(s) || trial.number % 16 == 0) timed("closest", [&] { check_closest(s); });
     if (side(0).is_solid() && side(1).is_solid()) timed("solids", [&] { check_solids(); });
     return failures_ < max_failures;

@@ -33,8 +33,8 @@ class NearPairs {
   std::array<const SurfaceBvh*, 2> model_;
   bool usable_ = true;
   kernels::Walk walk_;
-  // Seven children a level of either tree wait at most; more than these only in trees that are far from balanced.
-  std::array<kernels::WalkedPair, 160> waiting_;
+  // Seven children a level of either tree wait at most: enough for all but a few walks.
+  std::array<kernels::WalkedPair, 48> waiting_;
   std::vector<kernels::WalkedPair> more_waiting_;
 };
 
