@@ -18,13 +18,6 @@ enum class Verdict : std::uint8_t {
 };
 [[nodiscard]] SNUG_API const char* name_of(Verdict verdict);
 
-/// The points that an answer comes with.
-enum class WitnessKind : std::uint8_t {
-  none,         ///< none, the quickest; a lower end of a distance is then what the search happens to show
-  approximate,  ///< near the surfaces: LimitPoint::error says how near
-  exact,        ///< on the surfaces, up to rounding
-};
-
 struct CollideOptions {
   /// >= 0, mesh units: slack in which contact need not be decided. With 0 only proofs of contact or separation count.
   /// Default: 0.1 % of the larger surface's size.

@@ -41,7 +41,7 @@ struct Distance {
                                                       const DistanceOptions& options = {},
                                                       const Run& run = {});
 
-/// A limit point close to the closest one, in mesh units. It is at most distance.upper away, and `at` is set.
+/// A limit point close to the closest one, in mesh units, at most distance.upper away; `at` is set.
 struct ClosestPoint : LimitPoint {
   Interval distance{};  ///< contains the exact distance
   Outcome outcome = Outcome::complete;
@@ -49,8 +49,7 @@ struct ClosestPoint : LimitPoint {
 
 /// The point of a limit surface closest to a given point.
 ///
-/// Guarantee: `distance` contains the exact distance, and some limit point is at most its upper end away,
-///            whatever the outcome. The result depends on the input alone.
+/// Guarantee: `distance` contains the exact distance, whatever the outcome. The result depends on the input alone.
 /// Budget:    1,000,000 splits for each point; 200 bytes each.
 /// Errors:    InputError: (value) for a point that is not finite or more than 10^12 sizes of the surface
 ///            away, and for a precision that is negative or not finite; (refused) if no face of the mesh has

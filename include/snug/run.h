@@ -94,11 +94,19 @@ enum class Outcome : std::uint8_t {
 };
 [[nodiscard]] SNUG_API const char* name_of(Outcome outcome);
 
+/// The points that an answer comes with.
+enum class WitnessKind : std::uint8_t {
+  none,  ///< none, the quickest; of two surfaces the lower end of a distance is what the search happens to show
+  approximate,  ///< near the surfaces: LimitPoint::error says how near
+  exact,        ///< on the surfaces, up to rounding
+};
+
 /// How narrow an interval must become: upper - lower <= max(absolute, relative * upper). If only one is given the
 /// other is 0; if neither is given `absolute` is 0.01 % of the (larger) surface's size.
 struct Precision {
-  std::optional<double> absolute{};  ///< >= 0, mesh units
-  std::optional<double> relative{};  ///< >= 0
+  std::optional<double> absolute{};          ///< >= 0, mesh units
+  std::optional<double> relative{};          ///< >= 0
+  WitnessKind witness = WitnessKind::exact;  ///< `none` is as `approximate`
 };
 
 }  // namespace snug

@@ -74,6 +74,7 @@ class Surface(_Tagged):
         *,
         relative: Optional[float] = None,
         absolute: Length = None,
+        witness: str = "exact",
         max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,

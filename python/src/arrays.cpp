@@ -111,6 +111,15 @@ std::optional<double> length_of(const py::object& given, double size, const char
   return length;
 }
 
+WitnessKind witness_kind(const py::object& given) {
+  if (given.is_none()) return WitnessKind::exact;
+  const std::string_view name = py::isinstance<py::str>(given) ? given.cast<std::string_view>() : "";
+  if (name == "none") return WitnessKind::none;
+  if (name == "approximate") return WitnessKind::approximate;
+  if (name == "exact") return WitnessKind::exact;
+  refuse("witness: " + py::repr(given).cast<std::string>() + " is none of 'none', 'approximate', 'exact'");
+}
+
 std::uint64_t count_of(const py::object& given, std::uint64_t usual, const char* what) {
   if (given.is_none()) return usual;
   const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));

@@ -139,6 +139,8 @@ inline py::tuple pair_of(const Interval& interval) { return py::make_tuple(inter
 /// Errors:    ValueError, TypeError naming `what`.
 [[nodiscard]] std::optional<double> length_of(const py::object& given, double size, const char* what);
 [[nodiscard]] std::optional<double> number_of(const py::object& given, const char* what);
+/// None: exact.
+[[nodiscard]] WitnessKind witness_kind(const py::object& given);
 /// None: `usual`.
 [[nodiscard]] std::uint64_t count_of(const py::object& given, std::uint64_t usual, const char* what);
 /// A number of threads; 0: all cores.

@@ -15,21 +15,6 @@
 namespace snug::python {
 namespace {
 
-// The names that an enum has.
-template <class Enum>
-Enum named(const py::object& given, std::initializer_list<std::pair<const char*, Enum>> names,
-           const char* what) {
-  if (py::isinstance<py::str>(given)) {
-    for (const auto& [name, value] : names) {
-      if (PyUnicode_CompareWithASCIIString(given.ptr(), name) == 0) return value;
-    }
-  }
-  std::string known;
-  for (const auto& [name, value] : names) known += (known.empty() ? "'" : ", '") + std::string(name) + "'";
-  throw InputError(InputProblem::value,
-                   std::string(what) + ": " + py::repr(given).cast<std::string>() + " is none of " + known);
-}
-
 double larger_size(const PySurface& a, const PySurface& b) {
   return std::max(a.surface().size(), b.surface().size());
 }
@@ -60,13 +45,7 @@ Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, cons
   options.solid = solid;
   options.measure = measure;
   options.prove_contact = prove_contact;
-  if (!witness.is_none()) {
-    options.witness = named<WitnessKind>(witness,
-                                         {{"none", WitnessKind::none},
-                                          {"approximate", WitnessKind::approximate},
-                                          {"exact", WitnessKind::exact}},
-                                         "witness");
-  }
+  options.witness = witness_kind(witness);
   return file.written(for_poses<Collision>(
       a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
       file.with(run_of(threads, max_splits)),

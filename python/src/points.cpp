@@ -47,11 +47,12 @@ Precision precision_of(const PySurface& self, const py::object& relative, const 
 }
 
 Answers<ClosestPoint> closest(const PySurface& self, const py::object& points, const py::object& relative,
-                              const py::object& absolute, const py::object& max_splits,
-                              const py::object& threads, const py::object& progress,
-                              const py::object& certificate) {
+                              const py::object& absolute, const py::object& witness,
+                              const py::object& max_splits, const py::object& threads,
+                              const py::object& progress, const py::object& certificate) {
   CertificateFile file(certificate);
-  const Precision options = precision_of(self, relative, absolute);
+  Precision options = precision_of(self, relative, absolute);
+  options.witness = witness_kind(witness);
   return file.written(for_points<ClosestPoint>(
       self, points, progress, file.with(run_of(threads, max_splits)),
       [&](const Surface& surface, const Point3& p, const Run& run) {
@@ -470,11 +471,12 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
   surface
       .def(
           "closest_point", &closest, arg("points"), py::kw_only(), arg("relative") = none,
-          arg("absolute") = none, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
-          arg("certificate") = none,
+          arg("absolute") = none, arg("witness") = "exact", arg("max_splits") = none, arg("threads") = 0,
+          arg("progress") = none, arg("certificate") = none,
           (std::string(
                "The point of the surface closest to a point (3,), or to each of (n, 3), in mesh units.\n\n") +
            narrow +
+           "witness: 'exact', or 'approximate' for points near the surface, as their errors say: quicker.\n"
            "certificate: a file for a proof of the distances, which snug-check verifies.\n"
            "\nGuarantee: [lower, upper] contains the distance. Raises ValueError, MeshError, OverflowError.")
               .c_str())

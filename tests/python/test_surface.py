@@ -88,6 +88,15 @@ def test_tags():
     assert len(welded.vertices) == 8 and welded.is_closed
 
 
+def test_points_near_the_surface(cube):
+    points = np.array([[9, 0, 0], [0.1, 0.2, 5]])
+    exact, near = (cube.closest_point(points, absolute=0.02, witness=witness) for witness in ("exact", "approximate"))
+    assert (exact.error < 1e-12).all() and (near.error > 1e-12).all()
+    assert (np.abs(cube.evaluate(near.face, near.u, near.v, near.corner).point - near.point) <= near.error[:, None] + 1e-12).all()
+    with pytest.raises(ValueError, match="witness: 'roughly' is none of"):
+        cube.closest_point(points, witness="roughly")
+
+
 def test_update(cube):
     before, far = cube.vertices, cube.closest_point([9, 0, 0])
     copied = copy.copy(cube)

@@ -51,22 +51,20 @@ class ClosestSearch {
  public:
   ClosestSearch(PieceCache& cache, const QueryPoint& to, const Precision& options, const Run& run)
       : cache_(cache),
-        surface_(cache.model().surface()),
-        to_(to.at),
-        point_error_(to.error),
+        to_(to),
         options_(options),
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::closest_point)),
-        bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
-                *options.relative, point_noise * (2 + max_abs(to_ - Point3{}))),
-        coarse_(surface_.scale().apply(*options.absolute) > 0x1p-16 * (4 + max_abs(to_ - Point3{}))) {}
+        bounds_(surface().scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
+                *options.relative, point_noise * (2 + max_abs(to.at - Point3{}))),
+        coarse_(surface().scale().apply(*options.absolute) > 0x1p-16 * (4 + max_abs(to.at - Point3{}))) {}
 
   ClosestPoint run() {
     cache_.begin();
     // The nearest of all first takes longer for each, and has fewer pieces to split.
-    open_.start(coarse_ ? Order::last_first : Order::nearest_first, {cache_.root(), 0});
-    search(open_, *this);
-    for (const NodeGap& at : open_.items()) bounds_.prune(static_cast<double>(at.gap));
+    waiting().start(coarse_ ? Order::last_first : Order::nearest_first, {cache_.root(), 0});
+    search(waiting(), *this);
+    for (const NodeGap& at : waiting().items()) bounds_.prune(static_cast<double>(at.gap));
     return result();
   }
 
@@ -93,7 +91,7 @@ class ClosestSearch {
     const PieceCache::Opened opened = cache_.open(at.node);
     WideNode::Distances gaps;
     const auto most = static_cast<float>(bounds_.prune_distance());
-    const WideNode::Near near = opened.boxes->distances(to_, point_error_, most, gaps);
+    const WideNode::Near near = opened.boxes->distances(to_.at, to_.error, most, gaps);
     bounds_.prune(static_cast<double>(near.others));
     const float parent = std::max(single_down(gap_), 0.0F);
     if (near.places == 0) return;
@@ -101,9 +99,9 @@ class ClosestSearch {
     for (std::uint32_t rest = near.places & (near.places - 1); rest != 0; rest &= rest - 1) {
       auto place = static_cast<std::size_t>(std::countr_zero(rest));
       if (gaps[place] < gaps[nearest]) std::swap(place, nearest);
-      open_.add({opened.child(place), std::max(gaps[place], parent)});
+      waiting().add({opened.child(place), std::max(gaps[place], parent)});
     }
-    open_.add({opened.child(nearest), std::max(gaps[nearest], parent)});
+    waiting().add({opened.child(nearest), std::max(gaps[nearest], parent)});
   }
 
  private:
@@ -116,10 +114,10 @@ class ClosestSearch {
   // roundings are a notable part of the precision, as they are for points far away.
   double gap_of(const Node& node, const PieceBounds& record) {
     if (coarse_ && record.radius() < INFINITY) {
-      const auto [lower, upper, at, rounding] = record.distance(to_ - node.boxes->origin());
+      const auto [lower, upper, at, rounding] = record.distance(to_.at - node.boxes->origin());
       if (8 * rounding <= bounds_.precision()) {
-        const double doubt = enlarged(record.error() + 2 * spatial_error(point_error_) +
-                                      4 * unit_roundoff * max_abs(to_ - Point3{}));
+        const double doubt = enlarged(record.error() + 2 * spatial_error(to_.error) +
+                                      4 * unit_roundoff * max_abs(to_.at - Point3{}));
         if (upper + doubt < bounds_.upper()) {
           bounds_.reduce_upper(upper + doubt);
           nearest_ = OnQuadratic{node, at};
@@ -132,13 +130,14 @@ class ClosestSearch {
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
   double gap_of_triangle(const Node& node, const OffsetTriangle& offset) {
-    const NearestTriangles near = nearest({to_, to_, to_}, offset.base);
-    double gap = snug::gap_of(near, offset.radius, spatial_error(point_error_));
+    const NearestTriangles near = nearest({to_.at, to_.at, to_.at}, offset.base);
+    double gap = snug::gap_of(near, offset.radius, spatial_error(to_.error));
     if (near.certain_distance < bounds_.upper()) {
       take(node, clamped(near.on_b));
     }
     // A plane between the point and the quadratic, across the direction of the closest point so far.
-    if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(node, closest_.position - to_));
+    if (gap < bounds_.prune_distance())
+      gap = std::max(gap, plane_gap(node, closest_.point.position - to_.at));
     return gap;
   }
 
@@ -146,45 +145,57 @@ class ClosestSearch {
   void take(const Node& node, TriangleParameter at) {
     const Patch& patch = cache_.patch(node);
     const BoundedPoint found = limit_point(patch, at).from(patch.origin);
-    const double upper = distance_at_most(found.position - to_, spatial_error(found.error + point_error_));
-    if (!(upper < closest_distance_)) return;
-    closest_distance_ = upper;
+    const double upper = distance_at_most(found.position - to_.at, spatial_error(found.error + to_.error));
+    if (!(upper < closest_.distance)) return;
     bounds_.reduce_upper(upper);
-    closest_ = found;
-    at_ = place_of(surface_, cache_.name(node), at);
+    closest_ = {found, upper, place_of(surface(), cache_.name(node), at)};
+  }
+
+  // The point of the quadratic there.
+  void take_near(const Node& node, TriangleParameter at) {
+    const PieceBounds& record = PieceCache::bounds_of(node);
+    const Point3 point = node.boxes->origin() + record.at(at);
+    const double error = enlarged(record.error() + unit_roundoff * max_abs(point - Point3{}));
+    closest_ = {{point, error}, bounds_.upper(), place_of(surface(), cache_.name(node), at)};
   }
 
   [[nodiscard]] double plane_gap(const Node& node, const Vector3& direction) {
     const Vector3 w = normalized(direction);
     if (w == Vector3{}) return 0;
     const PieceBounds& record = PieceCache::bounds_of(node);
-    const Vector3 from = node.boxes->origin() - to_;
+    const Vector3 from = node.boxes->origin() - to_.at;
     const double taken = record.extent(-w) + enlarged(record.error_along(w)) - dot(w, from);
-    return gap_of_planes(taken) - 16 * unit_roundoff * max_abs(from) - spatial_error(point_error_) -
+    return gap_of_planes(taken) - 16 * unit_roundoff * max_abs(from) - spatial_error(to_.error) -
            16 * underflow_error;
   }
 
   ClosestPoint result() {
-    if (nearest_ && bounds_.upper() < closest_distance_) take(nearest_->node, nearest_->at);
-    const PowerOfTwo back = surface_.scale().inverse();
+    if (nearest_ && bounds_.upper() < closest_.distance) {
+      if (options_.witness == WitnessKind::exact) {
+        take(nearest_->node, nearest_->at);
+      } else {
+        take_near(nearest_->node, nearest_->at);
+      }
+    }
+    const PowerOfTwo back = surface().scale().inverse();
     const Interval distance{unscaled_down(std::max(0.0, bounds_.lower()), back),
                             require_representable(unscaled_up(bounds_.upper(), back))};
-    const BoundedPoint closest = unscaled(closest_, back);
-    return {{closest.position, closest.error, at_},
+    const BoundedPoint closest = unscaled(closest_.point, back);
+    return {{closest.position, closest.error, closest_.at},
             distance,
             outcome_of(near_enough(distance, options_), budget_spent_)};
   }
 
+  [[nodiscard]] const LimitSurface& surface() const { return cache_.model().surface(); }
+  [[nodiscard]] Frontier<NodeGap>& waiting() { return cache_.open_nodes(); }
+
   PieceCache& cache_;
-  const LimitSurface& surface_;
-  Point3 to_;
-  double point_error_;
+  const QueryPoint& to_;
   const Precision& options_;
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;
   DistanceBounds bounds_;
-  bool coarse_;  // far above the roundings of single precision
-  Frontier<NodeGap>& open_ = cache_.open_nodes();
+  bool coarse_;     // far above the roundings of single precision
   double gap_ = 0;  // of the node at hand
   // Where a quadratic came nearest that is known to be nearer than the point.
   struct OnQuadratic {
@@ -192,9 +203,13 @@ class ClosestSearch {
     TriangleParameter at;
   };
   std::optional<OnQuadratic> nearest_;
-  BoundedPoint closest_;
-  double closest_distance_ = INFINITY;
-  Place at_{};
+  // The point of those that were evaluated.
+  struct Found {
+    BoundedPoint point;
+    double distance = INFINITY;  // at most
+    Place at{};
+  };
+  Found closest_;
   std::uint64_t splits_ = 0;
   bool budget_spent_ = false;
 };

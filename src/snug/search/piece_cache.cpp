@@ -45,62 +45,59 @@ void PieceCache::Roots::clear() {
   if (++round_ == 0) *this = {};
 }
 
-std::size_t PieceCache::bytes() const {
-  return splits_.bytes() + entries_.bytes() + offsets_.bytes() + bytes_of_points_ + roots_.bytes() +
-         open_nodes_.bytes() + open_pairs_.bytes();
+void PieceCache::Known::forget() {
+  roots.clear();
+  splits.forget();
+  entries.forget();
+  offsets.forget();
 }
+
+std::size_t PieceCache::bytes() const { return known_.bytes() + open_nodes_.bytes() + open_pairs_.bytes(); }
 
 void PieceCache::begin(std::size_t max_bytes) {
   touched_ = 0;
   if (++query_ == 0 || bytes() > max_bytes) {
-    roots_ = {};
-    splits_ = {};
-    entries_ = {};
-    offsets_ = {};
+    known_ = {};
     open_nodes_ = {};
     open_pairs_ = {};
-    bytes_of_points_ = 0;
     query_ = 1;
   }
 }
 
 void PieceCache::renew(const SurfaceBvh& model) {
   model_ = &model;
-  roots_.clear();
-  splits_.forget();
-  entries_.forget();
-  offsets_.forget();
+  known_.forget();
 }
 
 template <class Make>
 std::uint32_t PieceCache::add(PatchId root, const Make& make) {
-  Entry& entry = entries_.add();
+  Entry& entry = known_.entries.add();
   const std::size_t before = entry.patch.points.capacity();
   entry.root = root;
   make(entry.patch);
   entry.children.fill(none);
   entry.offset = entry.split = none;
-  bytes_of_points_ += (entry.patch.points.capacity() - before) * sizeof(Vector3);
-  return static_cast<std::uint32_t>(entries_.size() - 1);
+  known_.bytes_of_points += (entry.patch.points.capacity() - before) * sizeof(Vector3);
+  return static_cast<std::uint32_t>(known_.entries.size() - 1);
 }
 
 std::uint32_t PieceCache::root_entry(PatchId root) {
-  std::uint32_t& entry = roots_[root.value()];
+  std::uint32_t& entry = known_.roots[root.value()];
   if (entry == none) entry = add(root, [&](Patch& patch) { model_->surface().patch(root, patch); });
   return entry;
 }
 
 std::uint32_t PieceCache::child_entry(std::uint32_t parent, unsigned child) {
-  const Entry& whole = entries_[parent];
+  const Entry& whole = known_.entries[parent];
   if (whole.children[child] != none) return whole.children[child];
   const std::uint32_t made = add(whole.root, [&](Patch& patch) { split(whole.patch, child, patch); });
-  entries_[parent].children[child] = made;
+  known_.entries[parent].children[child] = made;
   return made;
 }
 
 std::uint32_t PieceCache::entry_of(const Node& node) {
   if (node.kind == Node::Kind::patch) return root_entry(model_->patch(node.owner, node.place));
-  return child_entry(splits_[node.owner].parent, node.place);
+  return child_entry(known_.splits[node.owner].parent, node.place);
 }
 
 std::uint32_t PieceCache::entry_of(const PieceName& name) {
@@ -110,18 +107,19 @@ std::uint32_t PieceCache::entry_of(const PieceName& name) {
 }
 
 PieceName PieceCache::name(const Node& node) {
-  const Entry& entry = entries_[entry_of(node)];
-  return {entry.root, entry.patch.path};
+  if (node.kind == Node::Kind::patch) return {model_->patch(node.owner, node.place), {}};
+  const Entry& parent = known_.entries[known_.splits[node.owner].parent];
+  return {parent.root, parent.patch.path.child(node.place)};
 }
 
 const OffsetTriangle& PieceCache::offset_of_entry(std::uint32_t i) {
-  Entry& entry = entries_[i];
+  Entry& entry = known_.entries[i];
   if (entry.offset == none) {
     const BoundMethod method = always_rows_ ? BoundMethod::rows : model_->method();
-    offsets_.add() = offset_of(model_->surface().library(), entry.patch, points_, method);
-    entry.offset = static_cast<std::uint32_t>(offsets_.size() - 1);
+    known_.offsets.add() = offset_of(model_->surface().library(), entry.patch, points_, method);
+    entry.offset = static_cast<std::uint32_t>(known_.offsets.size() - 1);
   }
-  return offsets_[entry.offset];
+  return known_.offsets[entry.offset];
 }
 
 PieceCache::Opened PieceCache::open(const Node& node) {
@@ -132,13 +130,13 @@ PieceCache::Opened PieceCache::open(const Node& node) {
     return {&model_->leaf(leaf), Node::Kind::patch, leaf};
   }
   const std::uint32_t parent = entry_of(node);
-  Entry& whole = entries_[parent];
+  Entry& whole = known_.entries[parent];
   if (whole.split == none) {
     const Split made{split_node(*model_, whole.patch), parent, 0};
-    splits_.add() = made;
-    whole.split = static_cast<std::uint32_t>(splits_.size() - 1);
+    known_.splits.add() = made;
+    whole.split = static_cast<std::uint32_t>(known_.splits.size() - 1);
   }
-  Split& split = splits_[whole.split];
+  Split& split = known_.splits[whole.split];
   if (split.query != query_) {
     split.query = query_;
     ++touched_;

@@ -93,12 +93,12 @@ class PieceCache {
                                           : static_cast<const SplitNode*>(node.boxes)->bounds[node.place];
   }
   /// Its control points. What is referred to here and below stays where it is until begin() or renew().
-  [[nodiscard]] const Patch& patch(const Node& node) { return entries_[entry_of(node)].patch; }
+  [[nodiscard]] const Patch& patch(const Node& node) { return known_.entries[entry_of(node)].patch; }
   /// Its offset triangle, in double precision.
   [[nodiscard]] const OffsetTriangle& offset(const Node& node) { return offset_of_entry(entry_of(node)); }
   [[nodiscard]] PieceName name(const Node& node);
   /// Of a piece by its name, be it a node or not.
-  [[nodiscard]] const Patch& patch(const PieceName& name) { return entries_[entry_of(name)].patch; }
+  [[nodiscard]] const Patch& patch(const PieceName& name) { return known_.entries[entry_of(name)].patch; }
   [[nodiscard]] const OffsetTriangle& offset(const PieceName& name) {
     return offset_of_entry(entry_of(name));
   }
@@ -195,20 +195,31 @@ class PieceCache {
   [[nodiscard]] std::uint32_t add(PatchId root, const Make& make);
   [[nodiscard]] const OffsetTriangle& offset_of_entry(std::uint32_t entry);
 
+  // All that was found out of the surface.
+  struct Known {
+    Roots roots;
+    Store<Split> splits;
+    Store<Entry> entries;
+    Store<OffsetTriangle> offsets;
+    std::size_t bytes_of_points = 0;  // of entries
+
+    // Keeps its memory.
+    void forget();
+    [[nodiscard]] std::size_t bytes() const {
+      return splits.bytes() + entries.bytes() + offsets.bytes() + bytes_of_points + roots.bytes();
+    }
+  };
+
   const SurfaceBvh* model_;
   std::size_t max_pieces_;
   bool always_rows_;
-  BoundingPoints points_;
+  Known known_;
+  BoundingPoints points_;  // of the piece at hand
   KnownExtents extents_;
   Frontier<NodeGap> open_nodes_;
   Frontier<NodePair> open_pairs_;
-  Roots roots_;
-  Store<Split> splits_;
-  Store<Entry> entries_;
-  Store<OffsetTriangle> offsets_;
-  std::size_t bytes_of_points_ = 0;
   std::uint32_t query_ = 0;
-  std::size_t touched_ = 0;
+  std::size_t touched_ = 0;  // by this query
 };
 
 /// A surface where a query is to see it.
