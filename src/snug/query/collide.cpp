@@ -35,13 +35,37 @@ constexpr int max_attempts = 2000, max_attempts_within = 64;
 constexpr std::size_t max_waiting = 16;
 constexpr int quadratic_steps = 2, limit_steps = 2;
 
+// Pairs of pieces that are not split before others have been looked at.
+class WaitingPairs {
+ public:
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] bool full() const { return count_ == pairs_.size(); }
+  // `apart`: how far points of them are.
+  void add(const NodePair& pair, double apart) { pairs_[count_++] = {pair, apart}; }
+  // Those that come nearest.
+  [[nodiscard]] NodePair take_nearest() {
+    Waiting* const end = pairs_.data() + count_;
+    Waiting* const nearest = std::min_element(
+        pairs_.data(), end, [](const Waiting& x, const Waiting& y) { return x.apart < y.apart; });
+    const NodePair pair = nearest->pair;
+    std::move(nearest + 1, end, nearest);
+    --count_;
+    return pair;
+  }
+
+ private:
+  struct Waiting {
+    NodePair pair;
+    double apart;
+  };
+  std::array<Waiting, max_waiting + 1> pairs_;
+  std::size_t count_ = 0;
+};
+
 class CollideSearch {
  public:
   CollideSearch(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const Run& run)
-      : frames_(a, b),
-        options_(options),
-        monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits::collide)) {
+      : frames_(a, b), options_(options), run_(run) {
     margin_ = frames_.length_up(options.margin);
     reach_ = frames_.length_down((options.margin + *options.tolerance) * (1 - unit_roundoff));
   }
@@ -50,17 +74,19 @@ class CollideSearch {
   Collision run() {
     const NodePair roots = walk_.roots();
     // Points so near cannot be found sooner than a crossing is proved.
-    proving_ = options_.prove_contact ||
-               reach_ <= 0x1p-14 * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1)));
+    crossing_.wanted =
+        options_.prove_contact ||
+        reach_ <= 0x1p-14 * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1)));
     NearPairs near(frames_, stats_, margin_);
-    open_.start(Order::last_first);
-    if (!near.usable()) open_.add(roots);
-    do search(open_, *this);
+    open_pairs().start(Order::last_first);
+    if (!near.usable()) open_pairs().add(roots);
+    do search(open_pairs(), *this);
     while (take_more(near));
-    lower_ = std::min(lower_, std::max(0.0, near.others()));
+    known_.lower = std::min(known_.lower, std::max(0.0, near.others()));
     // An attempt costs about what a split does.
-    if (found_ && !proving_ && stats_.splits > 0 && is_flat(*near_) && near_->near.certain_distance == 0) {
-      crossing_ = proves_crossing(frames_, *near_);
+    if (known_.near_enough && !crossing_.wanted && stats_.splits > 0 && is_flat(*known_.pieces) &&
+        known_.pieces->near.certain_distance == 0) {
+      crossing_.proved = proves_crossing(frames_, *known_.pieces);
     }
     return result();
   }
@@ -68,62 +94,52 @@ class CollideSearch {
   // Rules (a), (b) and (c).
   Verb look_at(const NodePair& pair) {
     if (!pair.bounded()) return to_open(pair);
-    monitor_.checkpoint();
+    monitor_of(run_).checkpoint();
     const PiecePair pieces = pieces_.nearest(pair);
     if (!stays_open(pair, pieces)) return after_a_look();
     if (PiecePairs::at_single_precision(pair)) {
       return stays_open(pair, pieces_.nearest_in_double(pair)) ? to_open(pair) : after_a_look();
     }
     // Others may show at once what a split may show.
-    if (proving_) return to_open(pair);
-    waiting_[waiting_count_++] = {pair, length(pieces.between)};
-    return waiting_count_ == waiting_.size() ? open_nearest_waiting() : Verb::drop;
+    if (crossing_.wanted) return to_open(pair);
+    waiting_.add(pair, length(pieces.between));
+    return waiting_.full() ? open_nearest_waiting() : Verb::drop;
   }
   void open(const NodePair& pair) {
-    lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, margin_, open_)));
+    known_.lower = std::min(known_.lower, static_cast<double>(walk_.open(pair, margin_, open_pairs())));
   }
 
  private:
   [[nodiscard]] bool finished() const {
-    if (crossing_) return true;
-    return found_ && (!options_.prove_contact || attempts_ >= max_attempts_within);
+    if (crossing_.proved) return true;
+    return known_.near_enough && (!options_.prove_contact || crossing_.attempts >= max_attempts_within);
   }
   [[nodiscard]] Verb after_a_look() const { return finished() ? Verb::stop : Verb::drop; }
 
   // Where nothing is open: another pair of patches, or one that waits. False at the end.
   bool take_more(NearPairs& near) {
-    if (finished() || ended_) return false;
+    if (finished() || end_.came) return false;
     if (NodePair next; near.usable() && near.next(next)) {
-      open_.add(next);
+      open_pairs().add(next);
       return true;
     }
-    return waiting_count_ > 0 && open_nearest_waiting() == Verb::drop;
+    return !waiting_.empty() && open_nearest_waiting() == Verb::drop;
   }
 
-  // A pair of pieces as near as has waited.
-  struct Waiting {
-    NodePair pair;
-    double apart;
-  };
   Verb open_nearest_waiting() {
-    Waiting* const end = waiting_.data() + waiting_count_;
-    Waiting* const nearest = std::min_element(
-        waiting_.data(), end, [](const Waiting& x, const Waiting& y) { return x.apart < y.apart; });
-    const NodePair pair = nearest->pair;
-    std::move(nearest + 1, end, nearest);
-    --waiting_count_;
+    const NodePair pair = waiting_.take_nearest();
     const Verb verb = to_open(pair);
     if (verb == Verb::open) open(pair);
     return verb == Verb::stop ? Verb::stop : Verb::drop;
   }
 
   Verb to_open(const NodePair& pair) {
-    const PairWalk::May may = walk_.may(pair, max_splits_);
+    const PairWalk::May may = walk_.may(pair, max_splits());
     if (may == PairWalk::May::open) return Verb::open;
-    incomplete_ = true;
+    end_.incomplete = true;
     if (may == PairWalk::May::not_open) return Verb::drop;
-    ended_ = true;
-    budget_spent_ = stats_.splits >= max_splits_;
+    end_.came = true;
+    end_.budget_spent = stats_.splits >= max_splits();
     return Verb::stop;
   }
 
@@ -140,26 +156,23 @@ class CollideSearch {
                            ? pieces.gap
                            : std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
     if (gap > margin_) {
-      lower_ = std::min(lower_, gap);
+      known_.lower = std::min(known_.lower, gap);
       return false;
     }
-    if (!found_) {
-      if (!near_ || pieces.near_distance < near_->near_distance) near_ = pieces;
-      found_ = near_->near_distance <= reach_;
+    if (!known_.near_enough) {
+      known_.take(pieces, reach_);
       // Limit points themselves may be near enough where quadratics are not known to be.
-      if (!found_ && length(pieces.between) <= reach_) {
-        const Witness witness = pieces_.witness(pieces);
-        if (witness.distance < best_.distance) best_ = witness;
-        found_ = best_.distance <= reach_;
+      if (!known_.near_enough && length(pieces.between) <= reach_) {
+        known_.take(pieces_.witness(pieces), reach_);
       }
-      if (!found_ && !proving_ && pieces.gap <= reach_) find_common_point(pieces);
+      if (!known_.near_enough && !crossing_.wanted && pieces.gap <= reach_) find_common_point(pieces);
     }
-    if (proving_ && attempts_ < max_attempts && is_flat(pieces)) {
+    if (crossing_.wanted && crossing_.attempts < max_attempts && is_flat(pieces)) {
       if (pieces.near.certain_distance == 0) {
-        ++attempts_;
-        crossing_ = proves_crossing(frames_, pieces);
-      } else if (found_) {
-        ++attempts_;
+        ++crossing_.attempts;
+        crossing_.proved = proves_crossing(frames_, pieces);
+      } else if (known_.near_enough) {
+        ++crossing_.attempts;
       }
     }
     return !finished();
@@ -170,13 +183,11 @@ class CollideSearch {
     for (int i = 0; i < quadratic_steps && pieces.near_distance > reach_; ++i) {
       pieces_.step_together(pieces, pieces.between);
     }
-    if (pieces.near_distance < near_->near_distance) near_ = pieces;
-    found_ = near_->near_distance <= reach_;
-    if (found_ || length(pieces.between) > reach_) return;
-    for (int i = 0; i < limit_steps && !found_; ++i) {
+    known_.take(pieces, reach_);
+    if (known_.near_enough || length(pieces.between) > reach_) return;
+    for (int i = 0; i < limit_steps && !known_.near_enough; ++i) {
       const Witness witness = pieces_.witness(pieces);
-      if (witness.distance < best_.distance) best_ = witness;
-      found_ = best_.distance <= reach_;
+      known_.take(witness, reach_);
       pieces_.step_together(pieces, witness.points[1] - witness.points[0]);
     }
   }
@@ -184,48 +195,71 @@ class CollideSearch {
   Collision result() {
     Collision answer;
     answer.stats = stats_;
-    answer.verdict = crossing_     ? Verdict::intersecting
-                     : found_      ? Verdict::within
-                     : incomplete_ ? Verdict::undecided
-                                   : Verdict::separated;
-    answer.outcome = outcome_of(answer.verdict != Verdict::undecided, budget_spent_);
+    answer.verdict = crossing_.proved     ? Verdict::intersecting
+                     : known_.near_enough ? Verdict::within
+                     : end_.incomplete    ? Verdict::undecided
+                                          : Verdict::separated;
+    answer.outcome = outcome_of(answer.verdict != Verdict::undecided, end_.budget_spent);
     const PowerOfTwo back = frames_.to_mesh_units();
-    if (near_ && near_->near_distance < best_.distance) {
+    if (known_.pieces && known_.pieces->near_distance < known_.points.distance) {
       const bool exact = options_.witness == WitnessKind::exact;
-      const Witness witness = exact ? pieces_.witness(*near_) : PiecePairs::approximate_witness(*near_);
-      if (witness.distance < best_.distance) best_ = witness;
+      known_.take(exact ? pieces_.witness(*known_.pieces) : PiecePairs::approximate_witness(*known_.pieces),
+                  reach_);
     }
     // Pairs that were not visited, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
-    answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
-    if (best_.distance < INFINITY) {
+    answer.distance.lower = whole ? unscaled_down(std::min(known_.lower, known_.points.distance), back) : 0.0;
+    if (known_.points.distance < INFINITY) {
       // Two quadratics may be nearer than their limit points as doubles.
-      const double upper = near_ ? std::min(best_.distance, near_->near_distance) : best_.distance;
+      const double upper = known_.pieces ? std::min(known_.points.distance, known_.pieces->near_distance)
+                                         : known_.points.distance;
       answer.distance.upper = require_representable(unscaled_up(upper, back));
-      if (options_.witness != WitnessKind::none) pieces_.write_to(best_, answer);
+      if (options_.witness != WitnessKind::none) pieces_.write_to(known_.points, answer);
     }
-    if (crossing_) answer.distance.upper = 0;
+    if (crossing_.proved) answer.distance.upper = 0;
     return answer;
   }
+
+  [[nodiscard]] std::uint64_t max_splits() const { return run_.max_splits.value_or(default_splits::collide); }
+  [[nodiscard]] Frontier<NodePair>& open_pairs() { return frames_.cache(0).open_pairs(); }
+
+  // What is known of the distance.
+  struct Known {
+    double lower = INFINITY;          // of what was passed over
+    std::optional<PiecePair> pieces;  // whose quadratics came nearest
+    Witness points;                   // of limit points
+    bool near_enough = false;         // are the last ones of either, for a verdict?
+
+    void take(const PiecePair& found, double reach) {
+      if (!pieces || found.near_distance < pieces->near_distance) pieces = found;
+      near_enough = pieces->near_distance <= reach;
+    }
+    void take(const Witness& found, double reach) {
+      if (found.distance < points.distance) points = found;
+      near_enough = points.distance <= reach;
+    }
+  };
+  struct Crossing {
+    bool wanted = false, proved = false;
+    int attempts = 0;
+  };
+  struct End {
+    bool incomplete = false;    // pairs were not opened, for the budget, or because they cannot be
+    bool came = false;          // for the budget, or the memory of a query
+    bool budget_spent = false;  // the former
+  };
 
   PairFrames frames_;
   SearchStats stats_;
   PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
   PiecePairs pieces_{frames_, stats_};
-  Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
-  std::array<Waiting, max_waiting + 1> waiting_;
-  std::size_t waiting_count_ = 0;
   const CollideOptions& options_;
-  const WorkMonitor& monitor_;
-  std::uint64_t max_splits_;
+  const Run& run_;
   double margin_ = 0, reach_ = 0;
-  double lower_ = INFINITY;
-  Witness best_;
-  std::optional<PiecePair> near_;  // the two that came nearest
-  int attempts_ = 0;
-  bool proving_ = false;
-  // `incomplete_`: pairs were not opened, for the budget, which has `ended_`, or because they cannot be.
-  bool found_ = false, crossing_ = false, incomplete_ = false, ended_ = false, budget_spent_ = false;
+  Known known_;
+  Crossing crossing_;
+  WaitingPairs waiting_;
+  End end_;
 };
 
 // Makes of an answer about two closed surfaces that for the solids that they bound. A point of one surface in
