@@ -12,13 +12,12 @@
 namespace snug::command {
 namespace {
 
-// Of the tolerance: those of the tessellations that are simplified. Above 1 for what tessellate() proves may be
-// more than the deviation.
-// The first is 1, of which there is a tessellation already.
-constexpr std::array shares{1.0, 0.7, 0.5, 1.4, 2.0, 0.25};
-// Of the tolerance: errors of meshoptimizer's own, which does not measure distances to the surface.
-constexpr double min_share = 1.0 / 16, max_share = 8;
-constexpr int max_attempts = 7;
+// Of the tolerance: those of the tessellations that are simplified. The first is 1, of which there is a tessellation already;
+// of seven models coarser ones, or finer ones, made none smaller.
+constexpr std::array shares{1.0, 0.7, 0.5};
+// Of the tolerance: errors of meshoptimizer's own, which does not measure distances to the surface. They are halved in
+// logarithms until they are as near to each other as the last.
+constexpr double min_share = 1.0 / 16, max_share = 8, near_share = 1.1;
 
 // Indices and positions as meshoptimizer takes them: floats, about the middle.
 struct FloatMesh {
@@ -99,8 +98,9 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
     if (near) best = std::move(mesh);
     return near;
   };
-  int done = 0;
+  int done = -1;  // shares
   for (const double share : shares) {
+    ++done;
     how.error = share * tolerance;
     Tessellation fine;
     try {
@@ -113,9 +113,9 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
     const FloatMesh floats(fine);
     // Halving in logarithms: what is near enough goes below, what is not above.
     double low = min_share * tolerance, high = max_share * tolerance;
-    if (share > 1 && !consider(fine)) high = low;
-    for (int attempt = 0; attempt < max_attempts && low < high; ++attempt, ++done) {
-      run.monitor->report(done / static_cast<double>(shares.size() * max_attempts));
+    while (high > near_share * low) {
+      run.monitor->report((done + 1 - std::log(high / low) / std::log(max_share / min_share)) /
+                          shares.size());
       const double error = std::sqrt(low * high);
       (consider(part_of(fine, floats.simplified(error))) ? low : high) = error;
     }
