@@ -21,7 +21,7 @@ using testing::random_placement;
 using testing::random_vector;
 
 TEST(deforming_contact, is_not_later_than_points_that_meet_of_every_scheme_and_deformation) {
-  testing::Tally tally = testing::points_that_meet(41, testing::trials(150), 400'000);
+  testing::Tally tally = testing::points_that_meet(41, testing::trials(90), 400'000);
   tally.print();
   EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
   EXPECT_LE(tally.median(), 20);
@@ -39,7 +39,7 @@ TEST(deforming_contact, no_points_of_loop_surfaces_meet_before) {
   });
   testing::Tally tally;
   int checked = 0;
-  for (std::size_t trial = 0; trial < testing::trials(60); ++trial) {
+  for (std::size_t trial = 0; trial < testing::trials(40); ++trial) {
     std::array<oracle::TwinMesh, 2> twin{meshes[random() % meshes.size()], meshes[random() % meshes.size()]};
     std::array<std::vector<Point3>, 2> begin, end;
     const Vector3 side = random_vector(random, 2.5);

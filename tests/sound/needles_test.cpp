@@ -132,7 +132,7 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
   std::mt19937_64 random(71);
   const Surface first(testing::six_sheets(1));  // keeps the bounds that all of them share
   std::size_t separated = 0;
-  const std::size_t count = trial_count(300);
+  const std::size_t count = trial_count(180);
   for (std::size_t trial = 0; trial < count; ++trial) {
     const Setting here(random, trial,
                        {Scheme::loop, Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge});
@@ -186,7 +186,7 @@ TEST(needles, through_each_other_are_never_called_apart) {
   std::mt19937_64 random(72);
   const Surface first(testing::six_sheets(1));  // keeps the bounds that all of them share
   std::size_t intersecting = 0;
-  const std::size_t count = trial_count(300);
+  const std::size_t count = trial_count(180);
   for (std::size_t trial = 0; trial < count; ++trial) {
     const Setting here(random, trial, {Scheme::loop, Scheme::catmark});
     const std::int64_t deep = std::int64_t{1} << random() % 12;
