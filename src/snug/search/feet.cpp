@@ -140,7 +140,8 @@ TriangleParameter curved_foot(const QuadraticTriangle& q, const Point3& p, Trian
       best = next;
       least = now;
     }
-    if (std::fabs(next.u - at.u) + std::fabs(next.v - at.v) < 0x1p-30) break;
+    // The next step would be about the square of this one, and distances change by the square of that.
+    if (std::fabs(next.u - at.u) + std::fabs(next.v - at.v) < 0x1p-22) break;
     at = next;
   }
   return best;
