@@ -49,91 +49,33 @@ struct Look {
   [[nodiscard]] double likely() const { return upper < INFINITY ? upper : lower; }
 };
 
-// The first contact during one piece of both motions, and what came before.
-class FirstContactSearch {
+// Both surfaces as doubles, with what these are off by where the surfaces may meet.
+struct Places {
+  PlacedBvh a, b;
+  [[nodiscard]] double doubt() const { return a.deviation + b.deviation; }
+};
+
+// Both surfaces during one piece of their motions after the other.
+class MovingPair {
  public:
-  FirstContactSearch(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
-                     const Run& run)
-      : body_{MovingBody(a), MovingBody(b)},
-        options_(options),
-        monitor_(monitor_of(run)),
-        max_splits_(run.max_splits.value_or(default_splits::time_of_contact)),
-        tolerance_(*options.tolerance),
-        size_(share_of_size(1, a.model.surface().size(), b.model.surface().size())),
-        duration_(std::max(body_[0].duration(), body_[1].duration())) {
-    resolution_ = std::max(share_of_tolerance * tolerance_, min_resolution * size_);
-  }
+  MovingPair(const MovingBvh& a, const MovingBvh& b) : bodies_{MovingBody(a), MovingBody(b)} {}
 
-  TimeOfContact run() {
-    enter_piece(0);
-    if (!start()) {
-      for (std::size_t piece = 0; static_cast<double>(piece) < duration_; ++piece) {
-        if (piece > 0) enter_piece(piece);
-        if (!cross_piece(static_cast<double>(piece) + 1)) break;
-      }
-    }
-    return result();
-  }
-
- private:
   void enter_piece(std::size_t piece) {
-    place_in_piece(piece);
-    find_speed();
-    spent_ = 0;
-    looks_in_piece_ = 0;
-    looks_before_ = 0;
-    began_.reset();
-    ahead_.clear();
-    last_.reset();
-    closing_ = 1;
+    begin_ = static_cast<double>(piece);
+    for (MovingBody& body : bodies_) body.enter_piece(piece);
   }
-
-  void place_in_piece(std::size_t piece) {
-    first_ = static_cast<double>(piece);
-    for (MovingBody& body : body_) body.enter_piece(piece);
+  // Time at which the piece begins.
+  [[nodiscard]] double begin() const { return begin_; }
+  [[nodiscard]] double duration() const { return std::max(bodies_[0].duration(), bodies_[1].duration()); }
+  [[nodiscard]] bool deforms() const { return bodies_[0].deforms() || bodies_[1].deforms(); }
+  [[nodiscard]] double size() const {
+    return share_of_size(1, bodies_[0].model().surface().size(), bodies_[1].model().surface().size());
   }
+  [[nodiscard]] MovingBody& operator[](std::size_t side) { return bodies_[side]; }
 
-  void find_speed() {
-    MovingBody &a = body_[0], &b = body_[1];
-    if (a.deforms() || b.deforms()) {
-      linear_ = {a.linear_patches(), b.linear_patches()};
-      if (linear_[0] && linear_[1]) {
-        speed_ = 0;
-        narrow(first_ + 1);
-        return;
-      }
-      linear_ = {};
-    }
-    speed_ = enlarged(a.speed() + b.speed());
-    if (!a.deforms() && !b.deforms() && a.piece().straight() && b.piece().straight()) {
-      speed_ = std::min(speed_, PieceMotion::relative_speed(a.piece(), a.model(), b.piece(), b.model()));
-    }
-  }
-
-  // Where all patches go along lines, only those count that may meet from lower_ on.
-  void narrow(double end) {
-    const double to = std::min(end, crossing_);
-    if (!linear_[0] || !linear_[1] || narrowed_ == Interval(lower_, to)) return;
-    narrowed_ = {lower_, to};
-    const std::optional<double> speed =
-        LinearPatches::meeting_speed(*linear_[0], *linear_[1], lower_ - first_, to - first_);
-    if (!speed) {
-      speed_ = 0;
-      lower_ = to;
-      return;
-    }
-    if (speed_ > 0 && *speed > 0) closing_ = std::min(1.0, closing_ * speed_ / *speed);
-    speed_ = *speed;
-  }
-
-  // Both as doubles, with what these are off by where the surfaces may meet.
-  struct Places {
-    PlacedBvh a, b;
-    [[nodiscard]] double doubt() const { return a.deviation + b.deviation; }
-  };
-  [[nodiscard]] Places places_at(double time) {
-    const double s = time - first_;  // exact: both are at most a factor of 2 apart, or first_ is 0
-    const MovingBody::Place a = body_[0].at(s), b = body_[1].at(s);
+  [[nodiscard]] Places at(double time) {
+    const double s = time - begin_;  // exact: both are at most a factor of 2 apart, or begin_ is 0
+    const MovingBody::Place a = bodies_[0].at(s), b = bodies_[1].at(s);
     const Ball &ball_a = a.shape.model.ball(), &ball_b = b.shape.model.ball();
     // A common point is at most so far from the origin of either surface, and so are all its own.
     const double between = distance(a.pose.pose.apply(ball_a.centre), b.pose.pose.apply(ball_b.centre));
@@ -143,42 +85,226 @@ class FirstContactSearch {
     return {{a.shape.model, a.shape.scratch, a.pose.pose, a.deviation(reach_a)},
             {b.shape.model, b.shape.scratch, b.pose.pose, b.deviation(reach_b)}};
   }
-
-  void count(const SearchStats& stats) {
-    stats_.box_tests += stats.box_tests;
-    stats_.triangle_tests += stats.triangle_tests;
-    stats_.evaluations += stats.evaluations;
-    stats_.splits += stats.splits;
-    spent_ += stats.splits;
+  [[nodiscard]] SweptBody swept(std::size_t side) const {
+    return {bodies_[side].model(), bodies_[side].scratch(), bodies_[side].piece()};
   }
+
+ private:
+  std::array<MovingBody, 2> bodies_;
+  double begin_ = 0;
+};
+
+// An upper bound of the speed against each other of any two points that may be in one place later in the piece, and the
+// share of it at which distances shrank.
+class ClosingSpeed {
+ public:
+  ClosingSpeed() = default;
+  explicit ClosingSpeed(MovingPair& bodies) {
+    MovingBody &a = bodies[0], &b = bodies[1];
+    if (bodies.deforms()) {
+      linear_ = {a.linear_patches(), b.linear_patches()};
+      if (linear_[0] && linear_[1]) return;
+      linear_ = {};
+    }
+    most_ = enlarged(a.speed() + b.speed());
+    if (!bodies.deforms() && a.piece().straight() && b.piece().straight()) {
+      most_ = std::min(most_, PieceMotion::relative_speed(a.piece(), a.model(), b.piece(), b.model()));
+    }
+  }
+  // Where all patches go along lines, only those that may meet in [from, to] of the piece count. False if there are none.
+  [[nodiscard]] bool narrow(double from, double to) {
+    if (!linear_[0] || !linear_[1] || span_ == Interval(from, to)) return true;
+    span_ = {from, to};
+    const std::optional<double> narrowed = LinearPatches::meeting_speed(*linear_[0], *linear_[1], from, to);
+    if (narrowed && most_ > 0 && *narrowed > 0) share_ = std::min(1.0, share_ * most_ / *narrowed);
+    most_ = narrowed.value_or(0);
+    return narrowed.has_value();
+  }
+  void see(const Look& before, const Look& now) {
+    if (!(before.time < now.time && most_ > 0)) return;
+    const double share = (before.likely() - now.likely()) / (now.time - before.time) / most_;
+    share_ = std::clamp(share, 0.0, 1.0);
+  }
+
+  // How far that is in some time, rounded up.
+  [[nodiscard]] double way(double time) const { return enlarged(most_ * time); }
+  // How long a distance lasts, rounded down.
+  [[nodiscard]] double time_for(double distance) const {
+    if (most_ == 0) return distance > 0 ? INFINITY : 0;
+    return std::max(0.0, rounded_down(rounded_down(distance / most_)));
+  }
+  // The time after which a distance that goes on shrinking as it did is likely to last just back to now.
+  [[nodiscard]] double likely_step(double distance) const {
+    return reach_share * time_for(distance) * (1 - share_) / (1 + share_);
+  }
+  [[nodiscard]] double most() const { return most_; }
+  // Of it, at which distances shrank.
+  [[nodiscard]] double share() const { return std::max(share_, least_share); }
+
+ private:
+  double most_ = 0, share_ = 1;
+  std::array<std::optional<LinearPatches>, 2> linear_;  // both or none
+  Interval span_{-1, -1};                               // the times that most_ is of, if they are
+};
+
+// How well distances are to be known, and the time.
+struct Accuracy {
+  double tolerance, size, resolution = share_of_tolerance * tolerance;
+  // The way in a time that is short enough.
+  [[nodiscard]] double goal() const { return std::max(tolerance, 8 * min_resolution * size); }
+  [[nodiscard]] DistanceOptions wanted() const {
+    return {.absolute = std::max(resolution, min_resolution * size), .relative = relative};
+  }
+};
+
+// What was done, and what is left of the budget, which each piece has anew.
+struct Work {
+  const WorkMonitor& monitor;
+  std::uint64_t budget, spent = 0;
+  int looks = 0;
+  SearchStats stats{};
+
   void count_look() {
-    ++looks_;
-    ++looks_in_piece_;
-    spent_ += cost_of_look;
+    ++looks;
+    spent += cost_of_look;
   }
-  // Of the budget.
-  [[nodiscard]] std::uint64_t left() const { return spent_ < max_splits_ ? max_splits_ - spent_ : 0; }
+  void add(const SearchStats& more) {
+    stats.box_tests += more.box_tests;
+    stats.triangle_tests += more.triangle_tests;
+    stats.evaluations += more.evaluations;
+    stats.splits += more.splits;
+    spent += more.splits;
+  }
+  [[nodiscard]] std::uint64_t left() const { return spent < budget ? budget - spent : 0; }
+  [[nodiscard]] std::uint64_t most_of_look() const { return budget / looks_of_budget; }
   [[nodiscard]] Run for_look() const {
-    return {.monitor = &monitor_, .max_splits = std::min(left(), max_splits_ / looks_of_budget)};
+    return {.monitor = &monitor, .max_splits = std::min(left(), most_of_look())};
+  }
+};
+
+// Times at which it is not known whether there is contact.
+struct Undecided {
+  double first = INFINITY, last = 0;
+  int count = 0;
+  void add(double time) {
+    first = std::min(first, time);
+    last = std::max(last, time);
+    ++count;
+  }
+};
+
+// The first times known with contact at or before, within the tolerance, and undecided.
+struct UpperTimes {
+  double crossing = INFINITY, within = INFINITY;
+  Undecided undecided{};
+  [[nodiscard]] double near() const { return std::min(within, undecided.first); }
+};
+
+// How looks in a piece get on, and when pairs of nodes are followed through time instead.
+struct Progress {
+  int looks = 0, followed_at = 0;             // all, and those before pairs were followed
+  std::optional<Look> first{}, last{};        // that raised the lower bound; the first one since then
+  int patience = first_patience;              // looks before pairs are followed
+  std::uint64_t allowance = first_allowance;  // of work to follow them
+
+  void add(const Look& look) {
+    last = look;
+    if (!first) first = look;
+  }
+  void follow(bool to_end) {
+    first.reset();
+    followed_at = looks;
+    patience = to_end ? 1 : std::max(2 * looks, first_patience);
+  }
+  // Will looks take many more to `end` or to a distance of `goal`, if both get nearer as since the first one?
+  [[nodiscard]] bool slow(double lower, double end, double goal) const {
+    if (looks < patience || !first) return false;
+    if (patience <= 1) return true;
+    const double count = looks - followed_at, near = last->likely();
+    const double shrunk = std::log(first->likely() / near), to_shrink = std::log(std::max(near / goal, 1.0));
+    return count * (end - lower) > looks_too_many * (lower - first->time) &&
+           count * to_shrink > looks_too_many * shrunk;
+  }
+};
+
+// What is known of the surfaces at time 0.
+struct Start {
+  bool apart = false;             // as surfaces
+  std::optional<bool> outside{};  // of each other, once known
+  Nesting nested{};               // of solids
+
+  [[nodiscard]] Nesting nest(MovingPair& bodies, const WorkMonitor& monitor) const {
+    return apart ? nesting(bodies[0].at_start(), bodies[1].at_start(), monitor)
+                 : common_point(bodies[0].at_start(), bodies[1].at_start(), monitor);
+  }
+  // Are closed surfaces known to be outside of each other? Then one that has a point inside of the other one later has
+  // met it. Asked only where no crossing is found.
+  [[nodiscard]] bool known_outside(MovingPair& bodies, const WorkMonitor& monitor) {
+    if (!outside) {
+      const auto closed = [](const MovingBody& body) { return is_closed(body.model().surface()); };
+      outside = apart && closed(bodies[0]) && closed(bodies[1]);
+      if (*outside) {
+        const Nesting found = nest(bodies, monitor);
+        outside = !found.inner && found.certain;
+      }
+    }
+    return *outside;
+  }
+};
+
+// The first contact, in one piece of both motions after the other.
+class FirstContactSearch {
+ public:
+  FirstContactSearch(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
+                     const Run& run)
+      : bodies_(a, b),
+        options_(options),
+        work_{monitor_of(run), run.max_splits.value_or(default_splits::time_of_contact)} {}
+
+  TimeOfContact run() {
+    enter_piece(0);
+    if (!start()) {
+      for (std::size_t piece = 0; static_cast<double>(piece) < bodies_.duration(); ++piece) {
+        if (piece > 0) enter_piece(piece);
+        if (!cross_piece(static_cast<double>(piece) + 1)) break;
+      }
+    }
+    return result();
   }
 
-  // Is the surfaces' distance at that time enough for all that is left of the piece?
-  [[nodiscard]] bool far_enough(const Places& at, double time, double end, Look& look) const {
-    const double gap = root_gap(at.a, at.b, INFINITY) * (1 - 4 * unit_roundoff) - at.doubt();
-    if (!(gap > enlarged(speed_ * (end - time)))) return false;
-    look.lower = gap;
-    return true;
+ private:
+  void enter_piece(std::size_t piece) {
+    bodies_.enter_piece(piece);
+    speed_ = ClosingSpeed(bodies_);
+    narrow(bodies_.begin() + 1);
+    work_.spent = 0;
+    progress_ = {.patience = progress_.patience, .allowance = progress_.allowance};
+    ahead_.clear();
+  }
+
+  // Only what may meet from lower_ on counts.
+  void narrow(double end) {
+    const double to = std::min(end, upper_.crossing), begin = bodies_.begin();
+    if (!speed_.narrow(lower_ - begin, to - begin)) lower_ = to;
+  }
+
+  [[nodiscard]] Places begin_look(double time) {
+    ++progress_.looks;
+    work_.count_look();
+    return bodies_.at(time);
   }
 
   Look look_at(double time, double end) {
-    monitor_.report(time / std::max(duration_, 1.0));
-    count_look();
-    const Places at = places_at(time);
+    work_.monitor.report(time / std::max(bodies_.duration(), 1.0));
+    const Places at = begin_look(time);
     Look look{.time = time};
-    if (far_enough(at, time, end, look)) return look;
-    const DistanceOptions wanted{.absolute = resolution_, .relative = relative};
-    const Distance found = distance(at.a, at.b, wanted, for_look());
-    count(found.stats);
+    const double gap = root_gap(at.a, at.b, INFINITY) * (1 - 4 * unit_roundoff) - at.doubt();
+    if (gap > speed_.way(end - time)) {  // enough for all that is left of the piece
+      look.lower = gap;
+      return look;
+    }
+    const Distance found = distance(at.a, at.b, accuracy_.wanted(), work_.for_look());
+    work_.add(found.stats);
     look.crossing = found.distance.upper == 0;
     look.lower = std::max(0.0, rounded_down(found.distance.lower - at.doubt()));
     look.upper = look.crossing ? 0 : enlarged(found.distance.upper + at.doubt());
@@ -188,126 +314,94 @@ class FirstContactSearch {
   // Tries to prove contact at a time, by a crossing or by a point of one surface inside of the other one that
   // was not inside at the beginning.
   bool probe(double time) {
-    monitor_.checkpoint();
-    count_look();
-    const Places at = places_at(time);
+    work_.monitor.checkpoint();
+    const Places at = begin_look(time);
     const CollideOptions wanted{.tolerance = 0, .witness = WitnessKind::none, .prove_contact = true};
-    const Collision found = collide(at.a, at.b, wanted, for_look());
-    count(found.stats);
+    const Collision found = collide(at.a, at.b, wanted, work_.for_look());
+    work_.add(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
-    if (enlarged(found.distance.upper + at.doubt()) <= tolerance_) within_ = std::min(within_, time);
-    return found.verdict != Verdict::separated && (options_.solid || outside()) &&
-           common_point(at.a, at.b, monitor_).inner.has_value();
+    note_distance(time, enlarged(found.distance.upper + at.doubt()));
+    return found.verdict != Verdict::separated &&
+           (options_.solid || start_.known_outside(bodies_, work_.monitor)) &&
+           common_point(at.a, at.b, work_.monitor).inner.has_value();
   }
-
-  // Are closed surfaces known to be outside of each other at time 0? Then one that has a point inside of the
-  // other one later has met it. Asked only where no crossing is found.
-  bool outside() {
-    if (!outside_) {
-      const auto closed = [](const MovingBody& body) { return is_closed(body.model().surface()); };
-      outside_ = apart_ && closed(body_[0]) && closed(body_[1]);
-      if (*outside_) {
-        const Nesting found = nesting_at_start();
-        outside_ = !found.inner && found.certain;
-      }
-    }
-    return *outside_;
-  }
-  [[nodiscard]] Nesting nesting_at_start() const {
-    return apart_ ? nesting(body_[0].at_start(), body_[1].at_start(), monitor_)
-                  : common_point(body_[0].at_start(), body_[1].at_start(), monitor_);
+  void note_distance(double time, double upper) {
+    if (upper <= accuracy_.tolerance) upper_.within = std::min(upper_.within, time);
   }
 
   // At time 0. True if that is the answer.
   bool start() {
-    const double clear = lower_;
-    const Look look = look_at(0, duration_ > 0 ? 1 : 0);
-    apart_ = look.lower > 0 || clear > 0;
+    const double clear = lower_, end = bodies_.duration() > 0 ? 1 : 0;
+    const Look look = look_at(0, end);
+    start_.apart = look.lower > 0 || clear > 0;
     if (options_.solid && !look.crossing) {
-      inside_ = nesting_at_start();
-      if (inside_.inner) {
-        crossing_ = 0;
+      start_.nested = start_.nest(bodies_, work_.monitor);
+      if (start_.nested.inner) {
+        upper_.crossing = 0;
         return true;
       }
-      if (apart_ && !inside_.certain) {
+      if (start_.apart && !start_.nested.certain) {
         lower_ = 0;  // of the surfaces it may be known to be later
         return true;
       }
-      outside_ = apart_;
+      start_.outside = start_.apart;
     }
-    take(look, duration_ > 0 ? 1 : 0);
-    if (duration_ == 0) over_ = apart_;
-    return look.crossing || duration_ == 0;
+    take(look, end);
+    return look.crossing || end == 0;
   }
 
-  // How long a distance lasts, rounded down.
-  [[nodiscard]] double time_for(double distance) const {
-    if (speed_ == 0) return distance > 0 ? INFINITY : 0;
-    return std::max(0.0, rounded_down(rounded_down(distance / speed_)));
-  }
   // Is the time between two so short that it is not worth making shorter?
   [[nodiscard]] bool short_enough(double from, double to) const {
-    return from >= to || enlarged(speed_ * (to - from)) <= goal();
+    return from >= to || speed_.way(to - from) <= accuracy_.goal();
   }
-  [[nodiscard]] double goal() const { return std::max(tolerance_, 8 * min_resolution * size_); }
 
   // Takes into account what is known at a time.
   void take(const Look& look, double end) {
-    if (look.crossing) {
-      meet(look.time);
-      return;
-    }
-    if (look.upper <= tolerance_) within_ = std::min(within_, look.time);
+    if (look.crossing) return meet(look.time);
+    note_distance(look.time, look.upper);
     if (look.lower > 0) {
       ahead_.push_back(look);
       connect(end);
     } else {
-      block(look.time);
+      upper_.undecided.add(look.time);
     }
   }
   // Times beyond a contact are of no use.
   void meet(double time) {
-    crossing_ = std::min(crossing_, time);
-    std::erase_if(ahead_, [this](const Look& look) { return look.time > crossing_; });
-  }
-  void block(double time) {
-    blocked_ = std::min(blocked_, time);
-    blocked_to_ = std::max(blocked_to_, time);
-    ++blocks_;
+    upper_.crossing = std::min(upper_.crossing, time);
+    std::erase_if(ahead_, [this](const Look& look) { return look.time > upper_.crossing; });
   }
 
   // Looks ahead that reach back to `lower_` raise it.
   void connect(double end) {
     while (!ahead_.empty()) {
       const Look& next = ahead_.back();
-      const double last = time_for(next.lower);
-      if (rounded_up(next.time - last) > lower_ && next.time > lower_) return;
-      lower_ = std::clamp(rounded_down(next.time + last), std::max(lower_, next.time),
-                          std::max({lower_, next.time, std::min(end, crossing_)}));
-      if (last_ && last_->time < next.time && speed_ > 0) {
-        const double share = (last_->likely() - next.likely()) / (next.time - last_->time) / speed_;
-        closing_ = std::clamp(share, 0.0, 1.0);
-      }
-      last_ = next;
-      if (!began_) began_ = next;
+      const double lasts = speed_.time_for(next.lower), least = std::max(lower_, next.time);
+      if (rounded_up(next.time - lasts) > lower_ && next.time > lower_) return;
+      lower_ =
+          std::clamp(rounded_down(next.time + lasts), least, std::max(least, std::min(end, upper_.crossing)));
+      if (progress_.last) speed_.see(*progress_.last, next);
+      progress_.add(next);
       ahead_.pop_back();
     }
   }
 
   // The next time to look at, from lower_ on.
   [[nodiscard]] double next_time(double end) const {
+    const auto& [crossing, within, undecided] = upper_;
     if (!ahead_.empty()) {
-      const double from = ahead_.back().time - time_for(ahead_.back().lower);
-      return middle_of(lower_, blocked_ > lower_ ? std::min(blocked_, from) : from);
+      const double from = ahead_.back().time - speed_.time_for(ahead_.back().lower);
+      return middle_of(lower_, undecided.first > lower_ ? std::min(undecided.first, from) : from);
     }
-    if (crossing_ <= end && blocked_to_ < crossing_ && blocked_ - lower_ < crossing_ - blocked_to_) {
-      return middle_of(std::max(lower_, blocked_to_), crossing_);
+    if (crossing <= end && undecided.last < crossing &&
+        undecided.first - lower_ < crossing - undecided.last) {
+      return middle_of(std::max(lower_, undecided.last), crossing);
     }
-    if (!last_) return lower_;
+    if (!progress_.last) return lower_;
     // The next look is to reach back to lower_ with a distance that shrinks as it did before.
-    const double time = lower_ + reach_share * time_for(last_->lower) * (1 - closing_) / (1 + closing_);
-    double limit = std::min(crossing_, blocked_);
-    if (within_ > lower_) limit = std::min(limit, within_);
+    const double time = lower_ + speed_.likely_step(progress_.last->lower);
+    double limit = std::min(crossing, undecided.first);
+    if (within > lower_) limit = std::min(limit, within);
     return limit <= end ? std::min(time, middle_of(lower_, limit)) : std::min(time, end);
   }
   [[nodiscard]] static double middle_of(double from, double to) { return from + (to - from) / 2; }
@@ -315,76 +409,58 @@ class FirstContactSearch {
   // To the end of a piece. False if there is an answer, or none can be found.
   bool cross_piece(double end) {
     for (narrow(end); lower_ < end; narrow(end)) {
-      if (crossing_ <= end && short_enough(lower_, crossing_)) return false;
-      const double near = std::min(within_, blocked_);
-      if (near <= end && (short_enough(lower_, near) || blocks_ >= max_blocked)) {
-        if (!probed_ && options_.prove_contact && find_crossing(std::min(end, crossing_))) continue;
-        if (crossing_ > end || blocks_ >= max_blocked) return false;
+      const double last = std::min(end, upper_.crossing);
+      if (upper_.crossing <= end && short_enough(lower_, last)) return false;
+      const bool blocked = upper_.undecided.count >= max_blocked;
+      if (upper_.near() <= end && (short_enough(lower_, upper_.near()) || blocked)) {
+        if (!probed_ && options_.prove_contact && find_crossing(last)) continue;
+        if (upper_.crossing > end || blocked) return false;
       }
-      if (left() == 0) return false;
-      if (slow(std::min(end, crossing_)) && follow(std::min(end, crossing_))) continue;
+      if (work_.left() == 0) return false;
+      if (!bodies_.deforms() && progress_.slow(lower_, last, accuracy_.goal()) && follow(last)) continue;
       const double before = lower_;
       const Look look = look_at(next_time(end), end);
       take(look, end);
       // Too slow to get anywhere.
       const bool slow = lower_ - before <= 0x1p-48 * std::max(1.0, before);
-      if (look.lower > 0 && ahead_.empty() && slow) block(lower_);
+      if (look.lower > 0 && ahead_.empty() && slow) upper_.undecided.add(lower_);
     }
-    if (end == duration_) over_ = true;
     return true;
-  }
-
-  // Will looks take many more, if time goes on and the distance shrinks as since the first of these?
-  [[nodiscard]] bool slow(double end) const {
-    if (body_[0].deforms() || body_[1].deforms() || looks_in_piece_ < patience_ || !began_) return false;
-    if (patience_ <= 1) return true;
-    const double looks = looks_in_piece_ - looks_before_, near = last_->likely();
-    const double shrunk = std::log(began_->likely() / near),
-                 to_shrink = std::log(std::max(near / goal(), 1.0));
-    return looks * (end - lower_) > looks_too_many * (lower_ - began_->time) &&
-           looks * to_shrink > looks_too_many * shrunk;
   }
 
   // Follows pairs of nodes through time, while that gets on faster than looks did. True if that has raised lower_.
   bool follow(double end) {
-    const double before = lower_, looked = began_ ? before - began_->time : 0,
-                 least = share_of_step * goal() / speed_;
-    SweptPairs pairs({body_[0].model(), body_[0].scratch(), body_[0].piece()},
-                     {body_[1].model(), body_[1].scratch(), body_[1].piece()}, stats_);
+    const double before = lower_, looked = progress_.first ? before - progress_.first->time : 0,
+                 least = share_of_step * accuracy_.goal() / speed_.most();
+    SweptPairs pairs(bodies_.swept(0), bodies_.swept(1), work_.stats);
     bool faster = true;
-    for (; faster && lower_ < end && left() > 0; allowance_ *= 2) {
-      const double from = lower_, until = pairs.clear(from - first_, end - first_, least,
-                                                      std::min(allowance_, left()), monitor_);
-      spent_ += pairs.spent();
-      lower_ = until == end - first_ ? end : std::max(from, rounded_down(first_ + until));
-      faster = lower_ - from > looked && pairs.spent() >= allowance_;
+    for (std::uint64_t& most = progress_.allowance; faster && lower_ < end && work_.left() > 0; most *= 2) {
+      const double begin = bodies_.begin(), from = lower_;
+      const double until =
+          pairs.clear(from - begin, end - begin, least, std::min(most, work_.left()), work_.monitor);
+      work_.spent += pairs.spent();
+      lower_ = until == end - begin ? end : std::max(from, rounded_down(begin + until));
+      faster = lower_ - from > looked && pairs.spent() >= most;
     }
-    if (blocked_ < lower_) {
-      blocked_ = INFINITY;
-      blocked_to_ = 0;
-      blocks_ = 0;
-    }
+    if (upper_.undecided.first < lower_) upper_.undecided = {};
     connect(end);
-    began_.reset();
-    looks_before_ = looks_in_piece_;
-    patience_ = lower_ >= end ? 1 : std::max(2 * looks_in_piece_, first_patience);
+    progress_.follow(lower_ >= end);
     return lower_ > before;
   }
 
   // A little after the surfaces have come near each other.
   bool find_crossing(double end) {
     probed_ = true;
-    const double closing = std::max(closing_, least_share) * speed_;
-    const double base = std::max(lower_, last_ ? last_->time + last_->likely() / closing : 0);
-    resolution_ = std::max(resolution_ * std::clamp(closing_, least_share, 1.0), min_resolution * size_);
-    double step = 0.25 * goal() / speed_;
+    const std::optional<Look>& last = progress_.last;
+    const double closing = speed_.share() * speed_.most();
+    const double base = std::max(lower_, last ? last->time + last->likely() / closing : 0);
+    accuracy_.resolution *= speed_.share();
+    double step = 0.25 * accuracy_.goal() / speed_.most();
     for (int i = 0; i < max_probes; ++i, step *= 2) {
       const double time = std::min(base + step, end);
       if (probe(time)) {
         meet(time);
-        blocked_ = INFINITY;
-        blocked_to_ = 0;
-        blocks_ = 0;
+        upper_.undecided = {};
         return true;
       }
       if (time == end) return false;
@@ -394,83 +470,70 @@ class FirstContactSearch {
 
   // Nesting of solids whose surfaces turned out only later to be apart at first.
   void resolve_nesting() {
-    if (!options_.solid || outside_.value_or(true) || lower_ == 0) return;
-    inside_ = nesting(body_[0].at_start(), body_[1].at_start(), monitor_);
-    if (inside_.inner) crossing_ = 0;
-    if (!inside_.inner && inside_.certain) return;
-    lower_ = 0;
-    over_ = false;
+    if (!options_.solid || start_.outside.value_or(true) || lower_ == 0) return;
+    start_.apart = true;
+    start_.nested = start_.nest(bodies_, work_.monitor);
+    if (start_.nested.inner) upper_.crossing = 0;
+    if (start_.nested.inner || !start_.nested.certain) lower_ = 0;
+  }
+
+  // Is there no contact to the end?
+  [[nodiscard]] bool over() const {
+    return bodies_.duration() > 0 ? lower_ >= bodies_.duration() : start_.apart && start_.nested.certain;
   }
 
   TimeOfContact result() {
     resolve_nesting();
     TimeOfContact answer;
-    answer.steps = looks_;
-    if (crossing_ < INFINITY) {
+    answer.steps = work_.looks;
+    if (upper_.crossing < INFINITY) {
       answer.verdict = Verdict::intersecting;
-      answer.time = {std::min(lower_, crossing_), crossing_};
-    } else if (within_ < INFINITY && !over_) {
+      answer.time = {std::min(lower_, upper_.crossing), upper_.crossing};
+    } else if (upper_.within < INFINITY && !over()) {
       answer.verdict = Verdict::within;
-      answer.time = {std::min(lower_, within_), within_};
+      answer.time = {std::min(lower_, upper_.within), upper_.within};
     } else {
-      answer.verdict = over_ ? Verdict::separated : Verdict::undecided;
-      answer.time = {over_ ? duration_ : lower_, INFINITY};
-      answer.outcome = outcome_of(over_, left() == 0);
+      answer.verdict = over() ? Verdict::separated : Verdict::undecided;
+      answer.time = {lower_, INFINITY};
+      answer.outcome = outcome_of(over(), work_.left() == 0);
     }
     if (answer.time.upper < INFINITY) {
-      answer.outcome = outcome_of(short_enough(answer.time.lower, answer.time.upper), left() == 0);
+      answer.outcome = outcome_of(short_enough(answer.time.lower, answer.time.upper), work_.left() == 0);
       set_witness(answer);
     }
-    answer.stats = stats_;
+    answer.stats = work_.stats;
     return answer;
   }
 
   void set_witness(TimeOfContact& answer) {
-    // Surfaces may have come within the tolerance in a piece before.
-    if (answer.time.upper < first_) place_in_piece(static_cast<std::size_t>(answer.time.upper));
-    const Places at = places_at(answer.time.upper);
-    if (options_.solid && inside_.inner) {
-      answer.witness = inside_.witness();
-      answer.contained = inside_.inner;
+    if (options_.solid && start_.nested.inner) {
+      answer.witness = start_.nested.witness();
+      answer.contained = start_.nested.inner;
       return;
     }
-    const Distance found = distance(at.a, at.b, {.absolute = resolution_, .relative = relative},
-                                    {.monitor = &monitor_, .max_splits = max_splits_ / looks_of_budget});
-    count(found.stats);
+    // Surfaces may have come within the tolerance in a piece before.
+    const double time = answer.time.upper;
+    if (time < bodies_.begin()) bodies_.enter_piece(static_cast<std::size_t>(time));
+    const Places at = bodies_.at(time);
+    const Distance found = distance(at.a, at.b, accuracy_.wanted(),
+                                    {.monitor = &work_.monitor, .max_splits = work_.most_of_look()});
+    work_.add(found.stats);
     answer.witness = found.witness;
     for (LimitPoint& point : *answer.witness) point.error = enlarged(point.error + at.doubt());
   }
 
-  std::array<MovingBody, 2> body_;
+  MovingPair bodies_;
   const TimeOfContactOptions& options_;
-  const WorkMonitor& monitor_;
-  std::uint64_t max_splits_;
-  double tolerance_, size_, duration_;
-  double first_ = 0;  // time at which the piece begins
-  // Upper bound, of any two points against each other that may be in one place from lower_ on.
-  double speed_ = 0;
-  std::array<std::optional<LinearPatches>, 2> linear_;  // both or none
-  Interval narrowed_{-1, -1};                           // the times that speed_ is of, if they are
-  double resolution_ = 0;
+  Accuracy accuracy_{*options_.tolerance, bodies_.size()};
+  Work work_;
+  ClosingSpeed speed_;
   // At no time up to lower_ there is contact, or before it where it is 0 or an end of the answer.
   double lower_ = 0;
-  // The first times known with contact at or before, within the tolerance, and undecided.
-  double crossing_ = INFINITY, within_ = INFINITY, blocked_ = INFINITY;
-  double blocked_to_ = 0;     // the last of these
-  std::vector<Look> ahead_;   // times without contact beyond lower_, the first one last
-  std::optional<Look> last_;  // the last one that raised it
-  double closing_ = 1;        // share of speed_ at which the distance shrank
-  int looks_ = 0, looks_in_piece_ = 0, blocks_ = 0;
-  int patience_ = first_patience;              // looks in a piece before follow()
-  std::uint64_t spent_ = 0;                    // of the budget, in this piece
-  std::uint64_t allowance_ = first_allowance;  // of it, for follow()
-  std::optional<Look> began_;  // the first one that raised lower_, in this piece or since follow(),
-  int looks_before_ = 0;       // and looks in the piece before
-  bool probed_ = false, over_ = false;
-  bool apart_ = false;           // at first, as surfaces
-  std::optional<bool> outside_;  // of outside(), once known
-  Nesting inside_;               // at first, with solids
-  SearchStats stats_;
+  UpperTimes upper_;
+  std::vector<Look> ahead_;  // times without contact beyond lower_, the first one last
+  Progress progress_;
+  bool probed_ = false;  // for a crossing
+  Start start_;
 };
 
 }  // namespace
