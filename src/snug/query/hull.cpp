@@ -123,10 +123,87 @@ std::uint64_t max_pieces(const LimitSurface& surface, const Run& run) {
   return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
 }
 
+// Tolerances of owners' triangles, made smaller where something is wrong.
+class Tolerances {
+ public:
+  Tolerances(std::size_t owners, double error) : error_(error), of_owners_(owners, first_share * error) {}
+
+  [[nodiscard]] double operator[](std::uint32_t owner) const { return of_owners_[owner]; }
+  [[nodiscard]] std::span<const double> of_owners() const { return of_owners_; }
+  void begin_round() { wrong_.assign(of_owners_.size(), 0); }
+  // This one is to be made smaller, down to a share of the error.
+  void mark(std::uint32_t owner, double least) {
+    if (wrong_[owner] == 0 || least < wrong_[owner]) wrong_[owner] = least;
+  }
+  [[nodiscard]] bool marked(std::uint32_t owner) const { return wrong_[owner] != 0; }
+  // Halves what is marked; the least of these, or infinite if all are as small as they get.
+  [[nodiscard]] double refine() {
+    double least = INFINITY;
+    for (std::size_t owner = 0; owner < of_owners_.size(); ++owner) {
+      if (wrong_[owner] == 0 || of_owners_[owner] <= wrong_[owner] * error_) continue;
+      of_owners_[owner] /= 2;
+      least = std::min(least, of_owners_[owner]);
+    }
+    return least;
+  }
+
+ private:
+  double error_;
+  std::vector<double> of_owners_;
+  std::vector<double> wrong_;  // where something is: the least share
+};
+
+// The quadratics that facets are kept off.
+struct NearPieces {
+  PieceSet& first;  // for both sides, once one of them has triangles enough to be kept off them
+  PieceSet all{};
+  std::vector<std::uint8_t> marks{};  // those that facets come near
+
+  // False if there would be too many.
+  [[nodiscard]] bool begin_round(const LimitSurface& surface, double error, const Run& run) {
+    if (first.size() == 0) {
+      first = PieceSet(surface, error, run.threads, *run.monitor, max_pieces(surface, run));
+      if (first.size() == 0) return false;
+      first.prepare(run.threads);
+    }
+    if (all.size() == 0) all = first;
+    marks.assign(all.size(), 0);
+    return true;
+  }
+  // Makes finer what is marked. False if there would be too many.
+  [[nodiscard]] bool refine(const LimitSurface& surface, double error, const Run& run) {
+    if (std::all_of(marks.begin(), marks.end(), [](auto mark) { return mark == 0; })) return true;
+    if (all.refine(marks, error, run.threads, *run.monitor, max_pieces(surface, run)).empty()) return false;
+    all.prepare(run.threads);
+    return true;
+  }
+};
+
+// Triangles around each vertex.
+class TrianglesAround {
+ public:
+  explicit TrianglesAround(const Tessellation& mesh)
+      : begins_(mesh.positions.size() + 1), triangles_(3 * mesh.triangles.size()) {
+    for (const Names& t : mesh.triangles) {
+      for (const std::uint32_t v : t) ++begins_[v + 1];
+    }
+    for (std::size_t v = 1; v < begins_.size(); ++v) begins_[v] += begins_[v - 1];
+    std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const std::uint32_t v : mesh.triangles[t]) triangles_[next[v]++] = static_cast<std::uint32_t>(t);
+    }
+  }
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t v) const {
+    return std::span(triangles_).subspan(begins_[v], begins_[v + 1] - begins_[v]);
+  }
+
+ private:
+  std::vector<std::uint32_t> begins_, triangles_;
+};
+
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
  public:
-  // `pieces`: for both sides, once one of them has triangles enough to be kept off them.
   OneHull(const LimitSurface& surface, const HullOptions& options, bool inner, PieceSet& pieces,
           const Run& run)
       : surface_(surface),
@@ -137,25 +214,25 @@ class OneHull {
              .monitor = &monitor_,
              .max_splits = run.max_splits.value_or(default_splits::hull)},
         scale_(surface.scale()),
-        float_loss_(options.single_precision ? largest_float_loss() : 0),
-        tolerances_(surface.owner_count(), first_share * *options.error),
-        first_pieces_(pieces) {}
+        tolerances_(surface.owner_count(), *options.error),
+        pieces_{pieces} {}
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
   std::vector<HullProblem> run() {
     for (int round = 0;; ++round) {
-      make_triangles();
+      LocalTessellation made = tessellate(surface_, tolerances_.of_owners(), {.normals = false}, run_);
+      mesh_ = std::move(made.mesh);
       if (round == 0) {
-        border_ = has_border(mesh_);
-        inward_ = !border_ && is_inward(mesh_, scale_);
+        faces_.border = has_border(mesh_);
+        faces_.inward = !faces_.border && is_inward(mesh_, scale_);
       }
       problems_.clear();
-      wrong_.assign(surface_.owner_count(), 0);
-      move_vertices();
+      tolerances_.begin_round();
+      move_vertices(made.errors);
       if (!whole_mesh() && !problems_.empty()) break;
-      if (pieces_.size() == 0 && !make_pieces()) break;
-      piece_marks_.assign(pieces_.size(), 0);
-      if (!any_turned_) keep_off();
+      const double error = quadratic_share * first_share * scale_.apply(*options_.error);
+      if (!pieces_.begin_round(surface_, error, run_) && !blame_budget()) break;
+      if (!facets_.any_turned) keep_off();
       if (problems_.empty()) break;
       if (round + 1 == max_rounds || !whole_mesh() || !refine()) break;
     }
@@ -163,61 +240,47 @@ class OneHull {
   }
   // Did the budget allow for all triangles?
   [[nodiscard]] bool whole_mesh() const { return mesh_.outcome == Outcome::complete; }
-  [[nodiscard]] bool has_border_edges() const { return border_; }
+  [[nodiscard]] bool has_border_edges() const { return faces_.border; }
   // Oriented outward.
   [[nodiscard]] Hull take() {
     for (Names& t : mesh_.triangles) {
-      if (inward_) std::swap(t[1], t[2]);
+      if (faces_.inward) std::swap(t[1], t[2]);
     }
-    return {std::move(hull_), std::move(mesh_.triangles), std::move(mesh_.owners), gap_};
+    return {std::move(facets_.positions), std::move(mesh_.triangles), std::move(mesh_.owners), facets_.gap};
   }
 
  private:
-  void make_triangles() {
-    LocalTessellation made = tessellate(surface_, tolerances_, {.normals = false}, run_);
-    mesh_ = std::move(made.mesh);
-    errors_ = std::move(made.errors);
-    begins_.assign(mesh_.positions.size() + 1, 0);
-    for (const Names& t : mesh_.triangles) {
-      for (const std::uint32_t v : t) ++begins_[v + 1];
-    }
-    for (std::size_t v = 1; v < begins_.size(); ++v) begins_[v] += begins_[v - 1];
-    around_.resize(3 * mesh_.triangles.size());
-    std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      for (const std::uint32_t v : mesh_.triangles[t]) around_[next[v]++] = static_cast<std::uint32_t>(t);
-    }
-  }
-  // False, with a problem, if there would be too many.
-  bool make_pieces() {
-    if (first_pieces_.size() == 0) {
-      const double error = quadratic_share * first_share * scale_.apply(*options_.error);
-      first_pieces_ = PieceSet(surface_, error, run_.threads, monitor_, max_pieces(surface_, run_));
-      if (first_pieces_.size() == 0) return blame_budget();
-      first_pieces_.prepare(run_.threads);
-    }
-    pieces_ = first_pieces_;
-    return true;
-  }
+  // False.
   bool blame_budget() {
     blame(HullFault::too_few_triangles, 0, mesh_.positions[mesh_.triangles[0][0]]);
     return false;
   }
 
+  // Of the surface.
+  struct Faces {
+    bool border = false, inward = false;
+  };
+  // Triangles with their vertices moved.
+  struct Facets {
+    std::vector<Point3> positions{};
+    double gap = 0;
+    bool any_turned = false;  // does one lie the other way round than its triangle?
+  };
+
   [[nodiscard]] Triangle scaled(const std::vector<Point3>& points, const Names& t) const {
     return {scale_.apply(points[t[0]]), scale_.apply(points[t[1]]), scale_.apply(points[t[2]])};
   }
-  // The tolerances of an owner are to be made smaller, down to a share of the whole.
-  void mark_wrong(std::uint32_t owner, double least) {
-    if (wrong_[owner] == 0 || least < wrong_[owner]) wrong_[owner] = least;
-  }
   void blame(HullFault fault, std::size_t t, const Point3& place) {
     problems_.push_back({fault, inner_, place, mesh_.owners[t]});
-    mark_wrong(mesh_.owners[t], fault == HullFault::no_position ? min_share : min_share_apart);
+    tolerances_.mark(mesh_.owners[t], fault == HullFault::no_position ? min_share : min_share_apart);
   }
 
+  [[nodiscard]] QuadraticTriangle facet(std::size_t t) const {
+    return flat_quadratic(scaled(facets_.positions, mesh_.triangles[t]));
+  }
   // How far a vertex of a hull is at most moved when it becomes a float.
-  [[nodiscard]] double largest_float_loss() const {
+  [[nodiscard]] double float_loss() const {
+    if (!options_.single_precision) return 0;
     const double largest = scale_.inverse().apply(2) + *options_.error;
     return 2 * (0x1p-24 * largest + 0x1p-150);
   }
@@ -237,28 +300,28 @@ class OneHull {
   }
 
   // Each vertex as near as possible to where it was, beyond the planes of the triangles around it.
-  void move_vertices() {
-    const double sign = inner_ != inward_ ? -1 : 1;
+  void move_vertices(std::span<const double> errors) {
+    const TrianglesAround around(mesh_);
+    const double sign = inner_ != faces_.inward ? -1 : 1, float_loss = this->float_loss();
     std::vector<Vector3> normals(mesh_.triangles.size());
     std::vector<double> offsets(mesh_.triangles.size());
     parallel_for(normals.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
-        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss_;
+        offsets[t] = errors[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss;
       }
     });
-    hull_ = mesh_.positions;
-    std::vector<double> moved(hull_.size());
-    parallel_for(hull_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+    facets_ = {.positions = mesh_.positions};
+    std::vector<double> moved(mesh_.positions.size());
+    parallel_for(moved.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       monitor_.checkpoint();
       std::vector<Vector3> planes;
       for (std::size_t v = begin; v < end; ++v) {
+        Point3& p = facets_.positions[v];
         planes.clear();
         double largest = 0;
-        for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i)
-          largest = std::max(largest, offsets[around_[i]]);
-        for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i) {
-          const std::uint32_t t = around_[i];
+        for (const std::uint32_t t : around[v]) largest = std::max(largest, offsets[t]);
+        for (const std::uint32_t t : around[v]) {
           if (normals[t] != Vector3{}) planes.push_back((largest / offsets[t]) * normals[t]);
         }
         if (!planes.empty()) {  // else a point of needles only: it stays, and is found to be on the surface
@@ -268,27 +331,25 @@ class OneHull {
             moved[v] = INFINITY;
             continue;
           }
-          hull_[v] = hull_[v] + (largest / square) * z;
+          p = p + (largest / square) * z;
         }
-        hull_[v] = as_written(hull_[v]);
-        moved[v] = enlarged(distance(scale_.apply(hull_[v]), scale_.apply(mesh_.positions[v])));
+        p = as_written(p);
+        moved[v] = enlarged(distance(scale_.apply(p), scale_.apply(mesh_.positions[v])));
       }
     });
-    gap_ = 0;
-    any_turned_ = false;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const Names& names = mesh_.triangles[t];
       const double most = std::max({moved[names[0]], moved[names[1]], moved[names[2]]});
       // Parameter by parameter: the facet from its triangle, this from the surface.
       const double gap =
-          most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors_[t]);
-      gap_ = std::max(gap_, gap);
+          most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors[t]);
+      facets_.gap = std::max(facets_.gap, gap);
       if (gap <= *options_.error) {
         // Corners that moved sideways past each other: most of these facets meet others, and finding them is cheap.
         if (tolerances_[mesh_.owners[t]] > turned_share * *options_.error &&
-            sign * dot(unit_normal(scaled(hull_, names)), normals[t]) < 0) {
+            sign * dot(unit_normal(scaled(facets_.positions, names)), normals[t]) < 0) {
           blame(HullFault::meets_itself, t, mesh_.positions[names[0]]);
-          any_turned_ = true;
+          facets_.any_turned = true;
         }
         continue;
       }
@@ -307,25 +368,25 @@ class OneHull {
     parallel_for(count, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (t % 256 == 0) monitor_.checkpoint();
-        if (wrong_[mesh_.owners[t]] != 0) continue;  // there is no position, or none that is near enough
+        // There is no position, or none that is near enough.
+        if (tolerances_.marked(mesh_.owners[t])) continue;
         const double flat = flat_share * scale_.apply(tolerances_[mesh_.owners[t]]);
-        meets[t] = may_meet(pieces_, flat_quadratic(scaled(hull_, mesh_.triangles[t])), flat);
+        meets[t] = may_meet(pieces_.all, facet(t), flat);
       }
     });
     for (std::size_t t = 0; t < count; ++t) {
       if (meets[t] == 0) continue;
-      const Names& names = mesh_.triangles[t];
-      blame(HullFault::meets_surface, t, mesh_.positions[names[0]]);
+      blame(HullFault::meets_surface, t, mesh_.positions[mesh_.triangles[t][0]]);
       // It may meet another sheet, whose own facets are as near.
-      const QuadraticTriangle facet = flat_quadratic(scaled(hull_, names));
-      mark_near(pieces_, facet, 0, piece_marks_);
+      mark_near(pieces_.all, facet(t), 0, pieces_.marks);
     }
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      if (piece_marks_[p] != 0) mark_wrong(surface_.place(pieces_.name(p).patch).owner, min_share_apart);
+    for (std::size_t p = 0; p < pieces_.all.size(); ++p) {
+      if (pieces_.marks[p] == 0) continue;
+      tolerances_.mark(surface_.place(pieces_.all.name(p).patch).owner, min_share_apart);
     }
     std::vector<Point3> points;
-    points.reserve(hull_.size());
-    for (const Point3& p : hull_) points.push_back(scale_.apply(p));
+    points.reserve(facets_.positions.size());
+    for (const Point3& p : facets_.positions) points.push_back(scale_.apply(p));
     for (const auto& [a, b] : self_contacts(points, mesh_.triangles, max_contacts, run_.threads, monitor_)) {
       blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
@@ -334,22 +395,9 @@ class OneHull {
 
   // Smaller tolerances where something is wrong; false where they are as small as they get.
   bool refine() {
-    bool any = false;
-    double error = INFINITY;
-    for (std::size_t owner = 0; owner < tolerances_.size(); ++owner) {
-      if (wrong_[owner] == 0 || tolerances_[owner] <= wrong_[owner] * *options_.error) continue;
-      tolerances_[owner] /= 2;
-      error = std::min(error, tolerances_[owner]);
-      any = true;
-    }
-    if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
-      const double finer = quadratic_share * scale_.apply(error);
-      if (pieces_.refine(piece_marks_, finer, run_.threads, monitor_, max_pieces(surface_, run_)).empty()) {
-        return blame_budget();
-      }
-      pieces_.prepare(run_.threads);
-    }
-    return any;
+    const double least = tolerances_.refine();
+    return least < INFINITY &&
+           (pieces_.refine(surface_, quadratic_share * scale_.apply(least), run_) || blame_budget());
   }
 
   const LimitSurface& surface_;
@@ -358,20 +406,12 @@ class OneHull {
   WorkMonitor monitor_;
   Run run_;  // with this monitor
   PowerOfTwo scale_;
-  double float_loss_;               // mesh units
-  std::vector<double> tolerances_;  // of owners
+  Tolerances tolerances_;
   Tessellation mesh_;
-  std::vector<double> errors_;
-  std::vector<std::uint32_t> begins_, around_;  // triangles around each vertex
-  PieceSet& first_pieces_;
-  PieceSet pieces_;
-  bool border_ = false, inward_ = false;
+  NearPieces pieces_;
   std::vector<HullProblem> problems_;
-  std::vector<double> wrong_;              // of owners where something is: the least share
-  std::vector<std::uint8_t> piece_marks_;  // pieces that facets come near
-  std::vector<Point3> hull_;
-  double gap_ = 0;
-  bool any_turned_ = false;  // facets that lie the other way round than their triangles
+  Faces faces_;
+  Facets facets_;
 };
 
 // A hull as a surface of its own.
