@@ -31,6 +31,9 @@ struct ContactPair {
   bool within = false, crossing = false;
   std::array<TriangleParameter, 2> at;                 // of the root patches: where they are about nearest
   std::array<std::shared_ptr<const Patch>, 2> pieces;  // of those that may have a point in common
+  bool kept = true;                                    // is it a contact?
+  std::uint32_t arc = ChainArc::none;                  // the first one in it
+  std::uint32_t region = 0;
 };
 
 Box3 widened(Box3 box, double by) {
@@ -47,26 +50,29 @@ Box3 box_of(const Triangle& base, double radius) {
   return widened(box, radius);
 }
 
-class ContactsSearch {
+// Lists pairs of pieces that may be within the tolerance of each other.
+class ContactWalk {
  public:
-  ContactsSearch(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const Run& run)
-      : models_{&a.model, &b.model},
-        frames_(a, b),
+  // Adds statistics and how it ended to `answer`.
+  ContactWalk(PairFrames& frames, const ContactsOptions& options, const Run& run, Contacts& answer)
+      : frames_(frames),
         options_(options),
-        run_(run),
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::contacts)),
-        tolerance_(frames_.length_up(*options.within)),
-        within_(frames_.length_down(*options.within)) {}
+        tolerance_(frames.length_up(*options.within)),
+        within_(frames.length_down(*options.within)),
+        answer_(answer) {}
 
-  Contacts run() {
-    walk();
-    if (options_.curves) find_curves();
-    find_regions();
-    add_curves();
-    answer_.stats = stats_;
-    answer_.compared = cut_.compared;
-    return std::move(answer_);
+  // Breadth first: where the budget ends, what is left is about equally large.
+  std::vector<ContactPair> run() {
+    answer_.exhaustive = true;
+    const NodePair roots = walk_.roots();
+    fine_ =
+        std::max(largest_share * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1))),
+                 tolerance_);
+    open_.start(Order::first_first, roots);
+    search(open_, *this);
+    return std::move(near_);
   }
 
   Verb look_at(const NodePair& pair) {
@@ -80,7 +86,8 @@ class ContactsSearch {
       // Pieces that cannot be split are as fine as they get.
       const bool end = may == PairWalk::May::end;
       if (end || (within_ > 0 && !(pieces.near_distance <= within_))) {
-        answer_.outcome = worse(answer_.outcome, outcome_of(false, end && stats_.splits >= max_splits_));
+        answer_.outcome =
+            worse(answer_.outcome, outcome_of(false, end && answer_.stats.splits >= max_splits_));
       }
       list(pair, pieces);
       return Verb::drop;
@@ -93,19 +100,6 @@ class ContactsSearch {
   void open(const NodePair& pair) { static_cast<void>(walk_.open(pair, tolerance_, open_)); }
 
  private:
-  // ---- Pairs of pieces ----
-
-  // Breadth first: where the budget ends, what is left is about equally large.
-  void walk() {
-    answer_.exhaustive = true;
-    const NodePair roots = walk_.roots();
-    fine_ =
-        std::max(largest_share * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1))),
-                 tolerance_);
-    open_.start(Order::first_first, roots);
-    search(open_, *this);
-  }
-
   // Is a pair to be split? Else it is done with: apart, or listed.
   bool is_split(const NodePair& pair) {
     PiecePair pieces = pieces_.nearest(pair);
@@ -143,6 +137,39 @@ class ContactsSearch {
     near_.push_back(std::move(item));
   }
 
+  PairFrames& frames_;
+  const ContactsOptions& options_;
+  const WorkMonitor& monitor_;
+  std::uint64_t max_splits_;
+  double tolerance_, within_;
+  Contacts& answer_;
+  PairWalk walk_{frames_, answer_.stats, WideNode::Gaps::axes};
+  PiecePairs pieces_{frames_, answer_.stats};
+  Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
+  double fine_ = 0;  // larger pieces are split
+  std::vector<ContactPair> near_;
+};
+
+// All contacts: regions of pairs, and the curves in them.
+class ContactsSearch {
+ public:
+  ContactsSearch(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const Run& run)
+      : frames_(a, b), options_(options), run_(run), tolerance_(frames_.length_up(*options.within)) {}
+
+  Contacts run() {
+    near_ = ContactWalk(frames_, options_, run_, answer_).run();
+    if (options_.curves) find_curves();
+    find_regions();
+    add_curves();
+    answer_.compared = cut_.compared;
+    return std::move(answer_);
+  }
+
+ private:
+  [[nodiscard]] const LimitSurface& surface(std::size_t side) const {
+    return frames_.cache(side).model().surface();
+  }
+
   // ---- Curves ----
 
   void find_curves() {
@@ -151,55 +178,47 @@ class ContactsSearch {
       ContactPair& item = near_[i];
       if (item.pieces[0]) crossing.push_back({std::move(item.pieces), item.roots, i});
     }
-    cut_ =
-        cut_surfaces({&models_[0]->surface(), &models_[1]->surface()}, {frames_.frame(0), frames_.frame(1)},
-                     crossing, frames_.length_down(*options_.error), max_splits_, run_.threads, monitor_);
+    cut_ = cut_surfaces({&surface(0), &surface(1)}, {frames_.frame(0), frames_.frame(1)}, crossing,
+                        frames_.length_down(*options_.error),
+                        run_.max_splits.value_or(default_splits::contacts), run_.threads, monitor_of(run_));
     answer_.outcome =
         worse(answer_.outcome, outcome_of(cut_.reached && !cut_.budget_spent, cut_.budget_spent));
-    arc_in_.assign(near_.size(), ChainArc::none);
-    for (std::uint32_t i = 0; i < cut_.arcs.size(); ++i) {
-      std::uint32_t& known = arc_in_[cut_.arcs[i].contact];
-      known = std::min(known, i);
-      near_[cut_.arcs[i].contact].crossing = true;
-    }
-    std::vector<bool> met(near_.size());
-    for (const CrossingPieces& pair : crossing) met[pair.contact] = true;
-    std::vector<bool> left(near_.size());
-    for (const ChainArc& arc : cut_.arcs) left[arc.contact] = true;
-    for (const UnresolvedPieces& open : cut_.unresolved) left[open.contact] = true;
     // With no tolerance, what has no common point is no contact.
-    kept_.assign(near_.size(), true);
-    for (std::size_t i = 0; i < near_.size(); ++i) kept_[i] = tolerance_ > 0 || left[i] || !met[i];
+    for (const CrossingPieces& pair : crossing) near_[pair.contact].kept = tolerance_ > 0;
+    for (std::uint32_t i = 0; i < cut_.arcs.size(); ++i) {
+      ContactPair& item = near_[cut_.arcs[i].contact];
+      item.crossing = item.kept = true;
+      item.arc = std::min(item.arc, i);
+    }
+    for (const UnresolvedPieces& open : cut_.unresolved) near_[open.contact].kept = true;
   }
 
   // ---- Regions ----
 
   [[nodiscard]] bool neighbours(std::size_t side, PatchId p, PatchId q) const {
     if (p == q) return true;
-    const LimitSurface& surface = models_[side]->surface();
-    const auto a = surface.corner_names(p), b = surface.corner_names(q);
+    const auto a = surface(side).corner_names(p), b = surface(side).corner_names(q);
     return std::any_of(a.begin(), a.end(),
                        [&](std::uint32_t name) { return std::find(b.begin(), b.end(), name) != b.end(); });
   }
 
   void find_regions() {
-    if (kept_.empty()) kept_.assign(near_.size(), true);
     std::vector<Box3> boxes;
     for (const ContactPair& item : near_) boxes.push_back(item.boxes[0]);
     DisjointSets sets(near_.size());
     for_each_touching(boxes, [&](std::uint32_t i, std::uint32_t k) {
       const ContactPair &x = near_[i], &y = near_[k];
-      if (!kept_[i] || !kept_[k] || sets.least(i) == sets.least(k)) return;
+      if (!x.kept || !y.kept || sets.least(i) == sets.least(k)) return;
       if (!touch(x.boxes[1], y.boxes[1])) return;
       if (neighbours(0, x.roots[0], y.roots[0]) && neighbours(1, x.roots[1], y.roots[1])) sets.join(i, k);
     });
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;
-    region_.assign(near_.size(), 0);
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
-      if (kept_[i]) members[sets.least(i)].push_back(i);
+      if (near_[i].kept) members[sets.least(i)].push_back(i);
     }
     for (const auto& [least, items] : members) {
-      for (const std::uint32_t i : items) region_[i] = static_cast<std::uint32_t>(answer_.regions.size());
+      for (const std::uint32_t i : items)
+        near_[i].region = static_cast<std::uint32_t>(answer_.regions.size());
       answer_.regions.push_back(region_of(items));
     }
   }
@@ -217,7 +236,7 @@ class ContactsSearch {
       const auto [at, added] = contacts.try_emplace(roots);
       PatchContact& contact = at->second;
       if (added) {
-        for (std::size_t s = 0; s < 2; ++s) contact.patches[s] = models_[s]->surface().place(item.roots[s]);
+        for (std::size_t s = 0; s < 2; ++s) contact.patches[s] = surface(s).place(item.roots[s]);
         contact.distance = distance;
       }
       contact.distance = {std::min(contact.distance.lower, distance.lower),
@@ -231,7 +250,7 @@ class ContactsSearch {
         box.add(common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_)));
       }
       if (item.distance.upper < near_[nearest].distance.upper) nearest = i;
-      if (!arc_in_.empty()) arc = std::min(arc, arc_in_[i]);
+      arc = std::min(arc, item.arc);
     }
     for (auto& [roots, contact] : contacts) {
       for (std::size_t s = 0; s < 2; ++s) region.owners[s].push_back(contact.patches[s].owner);
@@ -271,12 +290,11 @@ class ContactsSearch {
                    ContactRegion& region) const {
     const PowerOfTwo back = frames_.to_mesh_units();
     for (std::size_t s = 0; s < 2; ++s) {
-      const LimitSurface& surface = models_[s]->surface();
-      const Patch patch = surface.patch(roots[s]);
+      const Patch patch = surface(s).patch(roots[s]);
       const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, at[s]).from(patch.origin));
       region.witness[s] = {require_representable(back.apply(point.position)),
                            unscaled_up(point.error, back) + underflow_error,
-                           place_of(surface, roots[s], at[s])};
+                           place_of(surface(s), roots[s], at[s])};
     }
   }
 
@@ -287,7 +305,7 @@ class ContactsSearch {
       curve.closed = chain.closed;
       curve.proved = true;
       curve.at_border = chain.at_border;
-      curve.region = region_[cut_.arcs[chain.ends.front() / 2].contact];
+      curve.region = near_[cut_.arcs[chain.ends.front() / 2].contact].region;
       double error = 0;
       const auto point = [&](std::uint32_t end) {
         const CutEnd& e = cut_.arcs[end / 2].arc.ends[end % 2];
@@ -320,28 +338,17 @@ class ContactsSearch {
       answer_.curves.push_back(std::move(curve));
     }
     for (const UnresolvedPieces& open : cut_.unresolved) {
-      answer_.open.push_back(
-          {unscaled(open.box, back),
-           {models_[0]->surface().place(open.roots[0]), models_[1]->surface().place(open.roots[1])},
-           region_[open.contact]});
+      answer_.open.push_back({unscaled(open.box, back),
+                              {surface(0).place(open.roots[0]), surface(1).place(open.roots[1])},
+                              near_[open.contact].region});
     }
   }
 
-  std::array<const SurfaceBvh*, 2> models_;
   PairFrames frames_;
-  SearchStats stats_;
-  PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
-  PiecePairs pieces_{frames_, stats_};
-  Frontier<NodePair>& open_ = frames_.cache(0).open_pairs();
   const ContactsOptions& options_;
-  Run run_;
-  const WorkMonitor& monitor_;
-  std::uint64_t max_splits_;
-  double tolerance_, within_;
-  double fine_ = 0;
+  const Run& run_;
+  double tolerance_;
   std::vector<ContactPair> near_;
-  std::vector<bool> kept_;
-  std::vector<std::uint32_t> region_, arc_in_;
   CutSurfaces cut_;
   Contacts answer_;
 };
