@@ -53,20 +53,69 @@ struct Leaf {
   Node node;
 };
 
+// The part of a ray that comes near a surface.
+struct NearPart {
+  NearPart(const RayTask& task, const Ball& ball) {
+    const Vector3 from = ball.centre - task.ray.origin;
+    const double middle = dot(task.ray.along, from);
+    far = max_abs(from);
+    const double reach = 1.001 * ball.radius + 0x1p-40 * (1 + far);
+    lower = std::max(task.outer.lower, middle - reach);
+    upper = std::min(task.outer.upper, middle + reach);
+    if (!bounded() || empty()) return;
+    const double half = (upper - lower) / 2, centre = lower + half;
+    segment.centre = task.ray.origin + centre * task.ray.along;
+    segment.box.half[0] = float_up(half * (1 + 0x1p-20));
+    for (std::size_t k = 0; k < 3; ++k) segment.box.axes[0][k] = static_cast<float>(task.ray.along[k]);
+    rounding = 0x1p-48 * (1 + far);
+  }
+  [[nodiscard]] bool bounded() const { return std::isfinite(lower) && std::isfinite(upper); }
+  [[nodiscard]] bool empty() const { return upper < lower; }
+
+  double far;           // how far the surface's middle is from the ray's origin, a coordinate
+  double lower, upper;  // along the ray
+  PlacedBox segment{};
+  double rounding = 0;  // of distances from it
+};
+
+// The sides of a patch beyond which there is no other, or more than one: a bit each.
+unsigned open_sides(const LimitSurface& surface, PatchId root) {
+  const Topology& topology = surface.topology();
+  const auto without_surface = [&](std::size_t owner) {
+    const auto [begin, end] = surface.patches_of(owner);
+    return begin == end || !surface.has_patch(PatchId(begin));
+  };
+  const std::array<PatchSide, 3> sides = sides_of(surface, root);
+  unsigned open = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (sides[k].part == PatchSide::Part::inside) continue;
+    const EdgeId edge(sides[k].number);
+    const HalfEdge half = topology.half_of(edge);
+    const bool ends =
+        topology.ends_fans(edge) ||
+        (surface.rules().primal
+             ? without_surface(topology.face_of(half).index()) ||
+                   without_surface(topology.face_of(topology.twin(half)).index())
+             : without_surface(topology.from(half).index()) || without_surface(topology.to(half).index()));
+    open |= static_cast<unsigned>(ends) << k;
+  }
+  return open;
+}
+
 class RayWalk {
  public:
   RayWalk(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor)
-      : cache_(cache), surface_(cache.model().surface()), task_(task), monitor_(monitor) {}
+      : cache_(cache), task_(task), monitor_(monitor), near_(task, cache.model().tree().ball()) {}
 
   FoundHits run() {
     cache_.begin();
-    if (!clip()) return {{}, bounded_};
+    if (!near_.bounded() || near_.empty()) return {{}, near_.bounded()};
     if (quick()) return std::move(found_);
     FoundHits best;
     best.complete = false;
     double reach = std::clamp(task_.precision / 8, 0x1p-34, 0x1p-10);
     // Roundings alone are off by more than 2^-46 of that.
-    const double least = 0x1p-40 * (1 + far_);
+    const double least = 0x1p-40 * (1 + near_.far);
     reach = std::max(reach, least);
     double share = first_share;
     bool resolved = false;
@@ -94,26 +143,6 @@ class RayWalk {
   }
 
  private:
-  // The part of the ray that comes near the surface; false if there is none, or none that is bounded.
-  bool clip() {
-    const Ball& ball = cache_.model().tree().ball();
-    const Vector3 from = ball.centre - task_.ray.origin;
-    const double middle = dot(task_.ray.along, from);
-    far_ = max_abs(from);
-    const double reach = 1.001 * ball.radius + 0x1p-40 * (1 + far_);
-    lower_ = std::max(task_.outer.lower, middle - reach);
-    upper_ = std::min(task_.outer.upper, middle + reach);
-    bounded_ = std::isfinite(lower_) && std::isfinite(upper_);
-    if (!bounded_ || upper_ < lower_) return false;
-    const double half = (upper_ - lower_) / 2, centre = lower_ + half;
-    segment_.centre = task_.ray.origin + centre * task_.ray.along;
-    segment_.box = {};
-    segment_.box.half[0] = float_up(half * (1 + 0x1p-20));
-    for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(task_.ray.along[k]);
-    rounding_ = 0x1p-48 * (1 + far_);
-    return true;
-  }
-
   void start() {
     open_.start(Order::nearest_first, {cache_.root(), -INFINITY});
     found_ = {};
@@ -124,12 +153,12 @@ class RayWalk {
   void open(const NodeGap& at, double reach, double end) {
     const PieceCache::Opened opened = cache_.open(at.node);
     WideNode::Distances gaps, ahead;
-    opened.boxes->distances(segment_, rounding_, 0, gaps);
+    opened.boxes->distances(near_.segment, near_.rounding, 0, gaps);
     opened.boxes->extents(-task_.ray.along, ahead);
     const double from = dot(task_.ray.along, opened.boxes->origin() - task_.ray.origin);
     for (std::size_t i = 0; i < opened.count(); ++i) {
       if (static_cast<double>(gaps[i]) > reach) continue;
-      const double begin = from - static_cast<double>(ahead[i]) - reach - rounding_;
+      const double begin = from - static_cast<double>(ahead[i]) - reach - near_.rounding;
       if (begin > end) continue;
       // Rounded down, whatever its sign.
       const auto lower = static_cast<float>(begin - 0x1p-22 * std::fabs(begin));
@@ -205,7 +234,7 @@ class RayWalk {
   // False where these are not enough.
   bool quick() {
     start();
-    Quick question{*this, upper_};
+    Quick question{*this, near_.upper};
     search(open_, question);
     if (!question.enough) return false;
     if (task_.query == RayQuery::any) return true;
@@ -243,17 +272,18 @@ class RayWalk {
   struct Tube {
     RayWalk& walk;
     double reach, fine;
+    std::vector<Leaf> leaves{};  // of groups that are not yet resolved
     double end_of_group = -INFINITY;
+    bool resolved = true, done = false;  // Is each group crossed for certain? Is that enough?
 
     Verb look_at(const NodeGap& at) {
       const auto& [node, begin] = at;
       // What comes first begins behind all of the group.
-      if (!walk.leaves_.empty() && static_cast<double>(begin) > end_of_group) {
-        walk.resolve_leaves(reach);
-        end_of_group = -INFINITY;
-        if (walk.done_) return Verb::stop;
+      if (!leaves.empty() && static_cast<double>(begin) > end_of_group) {
+        resolve_leaves();
+        if (done) return Verb::stop;
       }
-      if (static_cast<double>(begin) > walk.upper_ + reach) return Verb::stop;
+      if (static_cast<double>(begin) > walk.near_.upper + reach) return Verb::stop;
       if (!node.bounded()) return Verb::open;
       walk.monitor_.checkpoint();
       const SeenPiece piece = walk.seen(node);
@@ -261,35 +291,111 @@ class RayWalk {
       if (near.state == CrossingState::none) return Verb::drop;
       // Its boxes begin there, so that groups follow one another.
       near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
-      if (near.along.upper < near.along.lower || walk.outside(near.along, walk.upper_ + reach)) {
+      if (near.along.upper < near.along.lower || walk.outside(near.along, walk.near_.upper + reach)) {
         return Verb::drop;
       }
       const double off = near.limited_by_errors ? piece.error() : piece.width() + 2 * piece.error();
       const bool out_of_budget = walk.splits_ >= walk.task_.budget || walk.cache_.full();
       if (out_of_budget) walk.found_.complete = false;
       if (out_of_budget || off <= fine || !walk.can_open(node)) {
-        walk.leaves_.push_back({piece, piece.crossing({}, 0), near.along, node});
+        leaves.push_back({piece, piece.crossing({}, 0), near.along, node});
         end_of_group = std::max(end_of_group, near.along.upper);
         return out_of_budget ? Verb::stop : Verb::drop;
       }
       ++walk.splits_;
       return Verb::open;
     }
-    void open(const NodeGap& at) { walk.open(at, reach, walk.upper_ + reach); }
+    void open(const NodeGap& at) { walk.open(at, reach, walk.near_.upper + reach); }
+
+    void resolve_leaves() {
+      std::sort(leaves.begin(), leaves.end(),
+                [](const Leaf& x, const Leaf& y) { return x.along.lower < y.along.lower; });
+      for (std::size_t begin = 0, end; begin < leaves.size() && !done; begin = end) {
+        Extent along = leaves[begin].along;
+        for (end = begin + 1; end < leaves.size() && !(leaves[end].along.lower > along.upper); ++end) {
+          along.add(leaves[end].along);
+        }
+        resolve_group(std::span(leaves).subspan(begin, end - begin), along);
+      }
+      leaves.clear();
+      end_of_group = -INFINITY;
+    }
+
+    // One group. Its border, but for that of an open surface, belongs to pieces that no line in the tube meets: so
+    // each of these crosses the group equally often, signs counted.
+    void resolve_group(std::span<const Leaf> group, const Extent& along) {
+      if (walk.outside(along, walk.task_.outer.upper)) return;
+      const bool whole =
+          walk.found_.complete && walk.within(along) &&
+          std::none_of(group.begin(), group.end(), [&](const Leaf& leaf) { return near_open_side(leaf); });
+      const Leaf* at = &group.front();
+      TriangleParameter place = at->crossing.at;
+      int number = 0;
+      if (whole) {
+        Spiral spiral(reach);
+        for (unsigned i = 0; i < trials; ++i) {
+          const auto counted = count(group, spiral.next());
+          if (!counted) continue;
+          number = counted->number;
+          if (counted->leaf != nullptr) {
+            at = counted->leaf;
+            place = counted->at;
+          }
+          break;
+        }
+      }
+      // An answer for each crossing that is left, where all are wanted.
+      const int answers = walk.task_.query == RayQuery::all ? std::max(1, std::abs(number)) : 1;
+      for (int i = 0; i < answers; ++i) {
+        walk.add_hit(at->node, along, number != 0, std::clamp(number, -1, 1), place);
+      }
+      resolved = resolved && number != 0;
+      done = number != 0 && walk.task_.query != RayQuery::all;
+    }
+
+    struct Count {
+      int number = 0;
+      const Leaf* leaf = nullptr;  // one that is crossed
+      TriangleParameter at;
+    };
+    [[nodiscard]] static std::optional<Count> count(std::span<const Leaf> group, const Offset2& place) {
+      Count result;
+      for (const Leaf& leaf : group) {
+        const LinePieceCrossing crossing = leaf.seen.crossing(place, 0);
+        if (crossing.state == CrossingState::none) continue;
+        if (crossing.state != CrossingState::one) return std::nullopt;
+        result.number += crossing.side;
+        result.leaf = &leaf;
+        result.at = crossing.at;
+      }
+      return result;
+    }
+
+    [[nodiscard]] bool near_open_side(const Leaf& leaf) {
+      const PatchId root = walk.cache_.name(leaf.node).patch;
+      unsigned sides = open_sides(walk.cache_.model().surface(), root);
+      if (sides == 0) return false;
+      const PiecePath& path = walk.cache_.patch(leaf.node).path;
+      for (unsigned level = 0; level < path.level(); ++level) {
+        const unsigned child = path.digit(level);
+        sides &= child == 3 ? 0u : 1u << child | 1u << (child + 2) % 3;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        if ((sides >> k & 1u) != 0 && !leaf.seen.passes_side(k, {}, reach)) return true;
+      }
+      return false;
+    }
   };
 
   // True if each group is crossed for certain.
   bool search_tube(double reach, double fine) {
     start();
-    leaves_.clear();
-    resolved_ = true;
-    done_ = false;
     Tube question{*this, reach, fine};
     search(open_, question);
-    if (!done_) resolve_leaves(reach);
+    if (!question.done) question.resolve_leaves();
     if (task_.query == RayQuery::any) keep_certified();
     sort_hits();
-    return resolved_;
+    return question.resolved;
   }
 
   void keep_certified() {
@@ -299,119 +405,13 @@ class RayWalk {
     if (certified != hits.end()) hits.assign(1, FoundHit(*certified));
   }
 
-  void resolve_leaves(double reach) {
-    std::sort(leaves_.begin(), leaves_.end(),
-              [](const Leaf& x, const Leaf& y) { return x.along.lower < y.along.lower; });
-    for (std::size_t begin = 0, end; begin < leaves_.size() && !done_; begin = end) {
-      Extent along = leaves_[begin].along;
-      for (end = begin + 1; end < leaves_.size() && !(leaves_[end].along.lower > along.upper); ++end) {
-        along.add(leaves_[end].along);
-      }
-      resolve_group(std::span(leaves_).subspan(begin, end - begin), along, reach);
-    }
-    leaves_.clear();
-  }
-
-  // One group. Its border, but for that of an open surface, belongs to pieces that no line in the tube meets: so
-  // each of these crosses the group equally often, signs counted.
-  void resolve_group(std::span<const Leaf> group, const Extent& along, double reach) {
-    if (outside(along, task_.outer.upper)) return;
-    const bool whole = found_.complete && within(along) &&
-                       std::none_of(group.begin(), group.end(),
-                                    [&](const Leaf& leaf) { return near_open_side(leaf, reach); });
-    const Leaf* at = &group.front();
-    TriangleParameter place = at->crossing.at;
-    int number = 0;
-    if (whole) {
-      Spiral spiral(reach);
-      for (unsigned i = 0; i < trials; ++i) {
-        const auto counted = count(group, spiral.next());
-        if (!counted) continue;
-        number = counted->number;
-        if (counted->leaf != nullptr) {
-          at = counted->leaf;
-          place = counted->at;
-        }
-        break;
-      }
-    }
-    // An answer for each crossing that is left, where all are wanted.
-    const int answers = task_.query == RayQuery::all ? std::max(1, std::abs(number)) : 1;
-    for (int i = 0; i < answers; ++i) {
-      add_hit(at->node, along, number != 0, std::clamp(number, -1, 1), place);
-    }
-    resolved_ = resolved_ && number != 0;
-    done_ = number != 0 && task_.query != RayQuery::all;
-  }
-
-  struct Count {
-    int number = 0;
-    const Leaf* leaf = nullptr;  // one that is crossed
-    TriangleParameter at;
-  };
-  [[nodiscard]] static std::optional<Count> count(std::span<const Leaf> group, const Offset2& place) {
-    Count result;
-    for (const Leaf& leaf : group) {
-      const LinePieceCrossing crossing = leaf.seen.crossing(place, 0);
-      if (crossing.state == CrossingState::none) continue;
-      if (crossing.state != CrossingState::one) return std::nullopt;
-      result.number += crossing.side;
-      result.leaf = &leaf;
-      result.at = crossing.at;
-    }
-    return result;
-  }
-
-  [[nodiscard]] bool near_open_side(const Leaf& leaf, double reach) {
-    const PatchId root = cache_.name(leaf.node).patch;
-    unsigned sides = open_sides(root);
-    if (sides == 0) return false;
-    const PiecePath& path = cache_.patch(leaf.node).path;
-    for (unsigned level = 0; level < path.level(); ++level) {
-      const unsigned child = path.digit(level);
-      sides &= child == 3 ? 0u : 1u << child | 1u << (child + 2) % 3;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      if ((sides >> k & 1u) != 0 && !leaf.seen.passes_side(k, {}, reach)) return true;
-    }
-    return false;
-  }
-
-  // The sides of a patch beyond which there is no other, or more than one: a bit each.
-  [[nodiscard]] unsigned open_sides(PatchId root) const {
-    const Topology& topology = surface_.topology();
-    const auto without_surface = [&](std::size_t owner) {
-      const auto [begin, end] = surface_.patches_of(owner);
-      return begin == end || !surface_.has_patch(PatchId(begin));
-    };
-    const std::array<PatchSide, 3> sides = sides_of(surface_, root);
-    unsigned open = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (sides[k].part == PatchSide::Part::inside) continue;
-      const EdgeId edge(sides[k].number);
-      const HalfEdge half = topology.half_of(edge);
-      const bool ends =
-          topology.ends_fans(edge) ||
-          (surface_.rules().primal
-               ? without_surface(topology.face_of(half).index()) ||
-                     without_surface(topology.face_of(topology.twin(half)).index())
-               : without_surface(topology.from(half).index()) || without_surface(topology.to(half).index()));
-      open |= static_cast<unsigned>(ends) << k;
-    }
-    return open;
-  }
-
   PieceCache& cache_;
-  const LimitSurface& surface_;
   const RayTask& task_;
   const WorkMonitor& monitor_;
-  double lower_ = 0, upper_ = 0, far_ = 0, rounding_ = 0;
-  PlacedBox segment_{};
+  NearPart near_;
   Frontier<NodeGap>& open_ = cache_.open_nodes();
-  std::vector<Leaf> leaves_;
   FoundHits found_;
   std::uint64_t splits_ = 0;
-  bool bounded_ = true, resolved_ = true, done_ = false;
 };
 
 }  // namespace
