@@ -46,16 +46,16 @@ double widest(const std::vector<Vector3>& vectors, double error, const Vector3& 
          safely;
 }
 
-Extent extent_of_net(const std::vector<Vector3>& points, double error, const Point3& origin,
-                     double origin_error, const Vector3& w) {
+Extent extent_of_net(const std::vector<Vector3>& points, double error, const BoundedPoint& origin,
+                     const Vector3& w) {
   Extent extent;
-  double largest = max_abs(origin - Point3{});
+  double largest = max_abs(origin.position - Point3{});
   for (const Vector3& p : points) {
     extent.add(dot(w, p));
     largest = std::max(largest, max_abs(p));
   }
-  const double from = dot(w, origin - Point3{});
-  const double reach = enlarged(length(w) * (2 * (error + origin_error) + 32 * unit_roundoff * largest));
+  const double from = dot(w, origin.position - Point3{});
+  const double reach = enlarged(length(w) * (2 * (error + origin.error) + 32 * unit_roundoff * largest));
   if (!std::isfinite(reach) || !std::isfinite(extent.lower) || !std::isfinite(extent.upper)) return unbounded;
   return {extent.lower + from - reach, extent.upper + from + reach};
 }
@@ -73,7 +73,7 @@ struct Path {
 
 Path edge_of(const PlacedPiece& piece, std::size_t k) {
   constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
-  return {corners[k], corners[(k + 1) % 3], piece.along_edge(k)};
+  return {corners[k], corners[(k + 1) % 3], piece.derivatives().edge[k]};
 }
 
 // Through a piece from border to border, across the line between two parameters and halfway; nothing where there is
@@ -92,9 +92,9 @@ std::optional<Path> path_between(const PlacedPiece& piece, TriangleParameter p, 
   Path path;
   path.from = {middle.u + low * along.u, middle.v + low * along.v};
   path.to = {middle.u + high * along.u, middle.v + high * along.v};
-  for (std::size_t i = 0; i < piece.along_u().size(); ++i) {
-    path.tangents.push_back((path.to.u - path.from.u) * piece.along_u()[i] +
-                            (path.to.v - path.from.v) * piece.along_v()[i]);
+  const auto& [along_u, along_v, along_edges, error] = piece.derivatives();
+  for (std::size_t i = 0; i < along_u.size(); ++i) {
+    path.tangents.push_back((path.to.u - path.from.u) * along_u[i] + (path.to.v - path.from.v) * along_v[i]);
   }
   return path;
 }
@@ -103,8 +103,7 @@ std::optional<Path> path_between(const PlacedPiece& piece, TriangleParameter p, 
 
 PlacedPiece::PlacedPiece(BoundsCache& library, const Patch& patch, const PlacedFrame& frame) {
   if (patch.kind->polynomial()) {
-    origin_ = frame.apply(patch.origin);
-    origin_error_ = frame.apply_error(patch.origin);
+    origin_ = {frame.apply(patch.origin), frame.apply_error(patch.origin)};
     take_polynomial(patch, frame);
     bound_slope();
   } else {
@@ -115,79 +114,77 @@ PlacedPiece::PlacedPiece(BoundsCache& library, const Patch& patch, const PlacedF
 
 void PlacedPiece::take_polynomial(const Patch& patch, const PlacedFrame& frame) {
   const BezierRows& form = patch.kind->form();
-  degree_ = form.degree;
-  parts_ = form.parts;
-  const std::size_t n = degree_, count = bezier_count(n);
-  net_.resize(parts_ * count);
-  for (std::size_t i = 0; i < net_.size(); ++i) {
+  const std::size_t n = form.degree, count = bezier_count(n);
+  net_ = {std::vector<Vector3>(form.parts * count), n, form.parts};
+  double largest = 0;
+  for (std::size_t i = 0; i < net_.points.size(); ++i) {
     const Vector3 p = form.rows.apply<Vector3>(i, patch.points);
-    net_[i] = frame.scale * times(frame.rows, p);
-    largest_ = std::max(largest_, std::max(max_abs(net_[i]), frame.scale * max_abs(p)));
+    net_.points[i] = frame.scale * times(frame.rows, p);
+    largest = std::max(largest, std::max(max_abs(net_.points[i]), frame.scale * max_abs(p)));
   }
   // Rows of R have absolute sums below 2.
   const double net_error = enlarged(2 * frame.scale * form.rows.result_error(patch.largest, patch.error) +
-                                    16 * unit_roundoff * largest_) +
+                                    16 * unit_roundoff * largest) +
                            8 * underflow_error;
-  point_error_ = enlarged(net_error + gamma_bound(96) * largest_);
+  error_ = enlarged(net_error + gamma_bound(96) * largest);
   const auto degree = static_cast<double>(n);
-  derivative_error_ = enlarged(degree * (4 * net_error + 16 * unit_roundoff * largest_));
+  derivatives_.error = enlarged(degree * (4 * net_error + 16 * unit_roundoff * largest));
   const auto at = [&](std::size_t part, std::size_t i, std::size_t j) {
-    return net_[part * count + bezier_index(n, i, j)];
+    return net_.points[part * count + bezier_index(n, i, j)];
   };
-  for (std::size_t part = 0; part < parts_; ++part) {
+  for (std::size_t part = 0; part < net_.parts; ++part) {
     for (std::size_t j = 0; j < n; ++j) {
       for (std::size_t i = 0; i + j < n; ++i) {
         const Vector3 first = degree * (at(part, i + 1, j) - at(part, i, j)),
                       second = degree * (at(part, i, j + 1) - at(part, i, j));
         // The parts' corners are 0, 1, m and m, 1, 2 with m the middle of 0 and 2.
-        along_u_.push_back(part == 0 ? first : first + second);
-        along_v_.push_back(parts_ == 1 ? second : 2 * second);
+        derivatives_.u.push_back(part == 0 ? first : first + second);
+        derivatives_.v.push_back(net_.parts == 1 ? second : 2 * second);
       }
     }
   }
   const auto add_edge = [&](std::size_t edge, double share, const auto& point) {
     for (std::size_t t = 0; t <= n; ++t) {
       edge_[edge].push_back(point(t));
-      if (t > 0) along_edge_[edge].push_back((degree / share) * (point(t) - point(t - 1)));
+      if (t > 0) derivatives_.edge[edge].push_back((degree / share) * (point(t) - point(t - 1)));
     }
   };
-  const std::size_t last = parts_ - 1;
+  const std::size_t last = net_.parts - 1;
   add_edge(0, 1, [&](std::size_t t) { return at(0, t, 0); });
   add_edge(1, 1, [&](std::size_t t) { return at(last, n - t, t); });
-  if (parts_ == 2) add_edge(2, 0.5, [&](std::size_t t) { return at(1, 0, n - t); });
-  add_edge(2, parts_ == 2 ? 0.5 : 1, [&](std::size_t t) { return at(0, 0, n - t); });
+  if (net_.parts == 2) add_edge(2, 0.5, [&](std::size_t t) { return at(1, 0, n - t); });
+  add_edge(2, net_.parts == 2 ? 0.5 : 1, [&](std::size_t t) { return at(0, 0, n - t); });
 }
 
 void PlacedPiece::take_hull(BoundsCache& library, const Patch& patch, const PlacedFrame& frame) {
   thread_local BoundingPoints points;
   bounding_points(library, patch, points);
-  origin_ = frame.apply(points.origin);
-  origin_error_ = frame.apply_error(points.origin);
-  net_.resize(points.size());
-  for (std::size_t i = 0; i < net_.size(); ++i) net_[i] = frame.scale * times(frame.rows, points.at(i));
-  largest_ = 2 * frame.scale * points.largest;
-  point_error_ =
-      enlarged(2 * frame.scale * points.error + 16 * unit_roundoff * largest_) + 8 * underflow_error;
+  origin_ = {frame.apply(points.origin), frame.apply_error(points.origin)};
+  net_.points.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    net_.points[i] = frame.scale * times(frame.rows, points.at(i));
+  const double largest = 2 * frame.scale * points.largest;
+  error_ = enlarged(2 * frame.scale * points.error + 16 * unit_roundoff * largest) + 8 * underflow_error;
 }
 
 void PlacedPiece::bound_slope() {
-  const Vector3 u = mean(along_u_), v = mean(along_v_);
+  const auto& [along_u, along_v, along_edges, e] = derivatives_;
+  const Vector3 u = mean(along_u), v = mean(along_v);
   const Vector3 normal = normalized(cross(u, v));
   if (normal == Vector3{}) return;
   // dual_u . u = 1, dual_u . v = 0, and likewise for v, up to what is measured.
   Vector3 dual_u = cross(v, normal), dual_v = cross(normal, u);
   dual_u = (1 / dot(dual_u, u)) * dual_u;
   dual_v = (1 / dot(dual_v, v)) * dual_v;
-  const double e = derivative_error_;
-  const double uu = widest(along_u_, e, dual_u, 1), uv = widest(along_v_, e, dual_u, 0),
-               vu = widest(along_u_, e, dual_v, 0), vv = widest(along_v_, e, dual_v, 1);
+  const double uu = widest(along_u, e, dual_u, 1), uv = widest(along_v, e, dual_u, 0),
+               vu = widest(along_u, e, dual_v, 0), vv = widest(along_v, e, dual_v, 1);
   const double determinant = (1 - uu) * (1 - vv) - uv * vu;
   if (!(uu < 0.75 && vv < 0.75 && determinant > 0.0625)) return;
   const double length_u = length(dual_u), length_v = length(dual_v);
   const double max_u = (length_u * (1 - vv) + uv * length_v) / determinant,
                max_v = (length_v * (1 - uu) + vu * length_u) / determinant;
   const double slope =
-      safely * (max_u * widest(along_u_, e, normal, 0) + max_v * widest(along_v_, e, normal, 0)) + 0x1p-46;
+      safely * (max_u * widest(along_u, e, normal, 0) + max_v * widest(along_v, e, normal, 0)) + 0x1p-46;
   if (!(slope < max_slope)) return;
   normal_ = normal;
   slope_ = slope;
@@ -203,33 +200,30 @@ void PlacedPiece::bound_box() {
   }
 }
 
-Extent PlacedPiece::extent(const Vector3& w) const {
-  return extent_of_net(net_, point_error_, origin_, origin_error_, w);
-}
+Extent PlacedPiece::extent(const Vector3& w) const { return extent_of_net(net_.points, error_, origin_, w); }
 
-Vector3 PlacedPiece::at(TriangleParameter at) const {
-  SNUG_EXPECT(parts_ > 0);
+Vector3 PlacedPiece::Net::at(TriangleParameter at) const {
+  SNUG_EXPECT(parts > 0);
   double u = at.u, v = at.v;
   std::size_t part = 0;
-  if (parts_ == 2) {
+  if (parts == 2) {
     // 0 = 2 m - 2, as points, on the one half; 2 = 2 m - 0 on the other one.
     part = 1 - u - 2 * v >= 0 ? 0 : 1;
     v = part == 0 ? 2 * v : 2 * v + u - 1;
   }
   const double w = 1 - u - v;
-  std::array<Vector3, bezier_count(max_degree)> points;
-  const std::size_t count = bezier_count(degree_);
-  std::copy_n(net_.begin() + static_cast<std::ptrdiff_t>(part * count), count, points.begin());
-  for (std::size_t n = degree_; n > 0; --n) {
+  std::array<Vector3, bezier_count(max_degree)> net;
+  const std::size_t count = bezier_count(degree);
+  std::copy_n(points.begin() + static_cast<std::ptrdiff_t>(part * count), count, net.begin());
+  for (std::size_t n = degree; n > 0; --n) {
     for (std::size_t j = 0; j < n; ++j) {
       for (std::size_t i = 0; i + j < n; ++i) {
-        points[bezier_index(n - 1, i, j)] = w * points[bezier_index(n, i, j)] +
-                                            u * points[bezier_index(n, i + 1, j)] +
-                                            v * points[bezier_index(n, i, j + 1)];
+        net[bezier_index(n - 1, i, j)] = w * net[bezier_index(n, i, j)] + u * net[bezier_index(n, i + 1, j)] +
+                                         v * net[bezier_index(n, i, j + 1)];
       }
     }
   }
-  return points[0];
+  return net[0];
 }
 
 namespace {
@@ -264,20 +258,21 @@ class PathAgainstPiece {
  public:
   PathAgainstPiece(const PlacedPiece& from, const Path& path, const PlacedPiece& piece)
       : from_(from), path_(path), piece_(piece) {
-    const Vector3 t = mean(path.tangents), u = mean(piece.along_u()), v = mean(piece.along_v());
+    const auto& [along_u, along_v, along_edges, f] = piece.derivatives();
+    const Vector3 t = mean(path.tangents), u = mean(along_u), v = mean(along_v);
     const Vector3 across = cross(u, v);
     const double inverse = 1 / dot(t, across);
     if (!std::isfinite(inverse)) return;
     rows_ = {inverse * across, -inverse * cross(v, t), -inverse * cross(t, u)};
-    const double e = 4 * from.derivative_error(), f = piece.derivative_error();
+    const double e = 4 * from.derivatives().error;
     contraction_ = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       contraction_ = std::max(contraction_, safely * (widest(path.tangents, e, rows_[i], i == 0 ? 1 : 0) +
-                                                      widest(piece.along_u(), f, rows_[i], i == 1 ? -1 : 0) +
-                                                      widest(piece.along_v(), f, rows_[i], i == 2 ? -1 : 0)));
+                                                      widest(along_u, f, rows_[i], i == 1 ? -1 : 0) +
+                                                      widest(along_v, f, rows_[i], i == 2 ? -1 : 0)));
     }
-    error_ = enlarged(from.error() + piece.error() + from.origin_error() + piece.origin_error());
-    origins_ = from.origin() - piece.origin();
+    error_ = enlarged(from.error() + piece.error() + from.origin().error + piece.origin().error);
+    origins_ = from.origin().position - piece.origin().position;
   }
 
   enum class State : std::uint8_t {
@@ -321,8 +316,7 @@ class PathAgainstPiece {
   [[nodiscard]] bool apart(std::size_t edge) const {
     const auto parts = [&](const Vector3& w) {
       return w != Vector3{} &&
-             parted(extent_of_net(from_.edge(edge), from_.error(), from_.origin(), from_.origin_error(), w),
-                    piece_.extent(w));
+             parted(extent_of_net(from_.edge(edge), from_.error(), from_.origin(), w), piece_.extent(w));
     };
     if (parts(piece_.normal())) return true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -370,9 +364,9 @@ CutEnd end_at(const PlacedPiece& from, const Path& path, const Found& found) {
              .point = {},
              .error = 0};
   const Vector3 p = from.at(path.at(end.along));
-  end.point = from.origin() + p;
-  const double error = from.error() + from.origin_error() + 4 * unit_roundoff * max_abs(end.point - Point3{});
-  end.error = enlarged(found.doubt * longest(path.tangents, 4 * from.derivative_error()) * safely +
+  end.point = from.origin().position + p;
+  const double error = from.error() + from.origin().error + 4 * unit_roundoff * max_abs(end.point - Point3{});
+  end.error = enlarged(found.doubt * longest(path.tangents, 4 * from.derivatives().error) * safely +
                        spatial_error(error));
   return end;
 }

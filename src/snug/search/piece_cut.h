@@ -30,33 +30,39 @@ class PlacedPiece {
   [[nodiscard]] const Vector3& normal() const { return normal_; }
   [[nodiscard]] double slope() const { return slope_; }
 
-  /// The point at a parameter, relative to origin().
-  [[nodiscard]] Vector3 at(TriangleParameter at) const;
-  /// Upper bounds, a coordinate, of what at(), origin() are off.
-  [[nodiscard]] double error() const { return point_error_; }
-  [[nodiscard]] double origin_error() const { return origin_error_; }
-  [[nodiscard]] const Point3& origin() const { return origin_; }
-  /// Vectors whose hull holds the derivatives along u and along v, or along the edge from corner k to k + 1, up to
-  /// derivative_error() a coordinate.
-  [[nodiscard]] const std::vector<Vector3>& along_u() const { return along_u_; }
-  [[nodiscard]] const std::vector<Vector3>& along_v() const { return along_v_; }
-  [[nodiscard]] const std::vector<Vector3>& along_edge(std::size_t k) const { return along_edge_[k]; }
-  [[nodiscard]] double derivative_error() const { return derivative_error_; }
+  [[nodiscard]] const BoundedPoint& origin() const { return origin_; }
+  /// The point at a parameter, relative to the origin.
+  [[nodiscard]] Vector3 at(TriangleParameter at) const { return net_.at(at); }
+  /// Upper bound, a coordinate, of what at() is off.
+  [[nodiscard]] double error() const { return error_; }
+  /// Vectors whose hull holds the derivatives along u and along v, or along the edge from corner k to k + 1.
+  struct Derivatives {
+    std::vector<Vector3> u, v;
+    std::array<std::vector<Vector3>, 3> edge;
+    double error = 0;  ///< upper bound, a coordinate, of what they are off
+  };
+  [[nodiscard]] const Derivatives& derivatives() const { return derivatives_; }
   /// Points whose hull holds the edge, up to error().
   [[nodiscard]] const std::vector<Vector3>& edge(std::size_t k) const { return edge_[k]; }
 
  private:
+  // Relative to the origin: Bezier points of one part or of two halves, or points whose hull holds the piece.
+  struct Net {
+    std::vector<Vector3> points;
+    std::size_t degree = 0, parts = 0;
+    [[nodiscard]] Vector3 at(TriangleParameter at) const;
+  };
+
   void take_polynomial(const Patch& patch, const PlacedFrame& frame);
   void take_hull(BoundsCache& library, const Patch& patch, const PlacedFrame& frame);
   void bound_slope();
   void bound_box();
 
-  std::vector<Vector3> net_;  // relative to origin_
-  std::size_t degree_ = 0, parts_ = 0;
-  Point3 origin_;
-  double origin_error_ = 0, point_error_ = 0, derivative_error_ = 0, largest_ = 0;
-  std::vector<Vector3> along_u_, along_v_;
-  std::array<std::vector<Vector3>, 3> along_edge_, edge_;
+  BoundedPoint origin_;
+  Net net_;
+  double error_ = 0;
+  Derivatives derivatives_;
+  std::array<std::vector<Vector3>, 3> edge_;
   Vector3 normal_;
   double slope_ = INFINITY;
   Box3 box_;
