@@ -55,6 +55,20 @@ struct Tile {
   PieceQuadratic quadratic;
 };
 
+// A triangle of the mesh, on a piece.
+struct Facet {
+  std::array<TriangleParameter, 3> at;
+  Index piece;
+  double error = INFINITY;  // upper bound of its distance from the surface, either way
+
+  // Corner k, or the middle of the side that begins at corner k - 3.
+  [[nodiscard]] TriangleParameter point(std::size_t k) const {
+    if (k < 3) return at[k];
+    const TriangleParameter a = at[k - 3], b = at[(k - 2) % 3];
+    return {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
+  }
+};
+
 // The limits of a run, in scaled units.
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY, max_thickness = INFINITY;
@@ -125,7 +139,6 @@ class MeshRefinement {
         options_(options),
         limits_(limits),
         run_(run),
-        monitor_(monitor_of(run)),
         back_(surface.scale().inverse()),
         complex_(surface),
         vertices_(complex_.vertex_count()) {}
@@ -165,10 +178,12 @@ class MeshRefinement {
   void carry_out(const Cut& cut);
   [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
   [[nodiscard]] FlatTriangle flat(Index t) const;
+  [[nodiscard]] const Tile& piece_of(std::size_t t) const { return pieces_[facets_[t].piece]; }
+  [[nodiscard]] Tile& piece_of(std::size_t t) { return pieces_[facets_[t].piece]; }
   [[nodiscard]] double tolerance(Index t) const {
     if (limits_.slope < INFINITY) return std::min(limits_.tolerance, seen_tolerance(t));
     if (limits_.of_owner.empty()) return limits_.tolerance;
-    return limits_.of_owner[surface_.place(PatchId(pieces_[piece_[t]].patch)).owner];
+    return limits_.of_owner[surface_.place(PatchId(piece_of(t).patch)).owner];
   }
   [[nodiscard]] const Point3& scaled(Index v) const { return vertices_[v].scaled; }
   void finish(Vertex& vertex, const BoundedPoint& point) const;
@@ -179,14 +194,10 @@ class MeshRefinement {
   const TessellateOptions& options_;
   Limits limits_;
   Run run_;
-  const WorkMonitor& monitor_;
   PowerOfTwo back_;
   TriangleComplex complex_;
   std::vector<Vertex> vertices_;
-  // Of triangles.
-  std::vector<std::array<TriangleParameter, 3>> at_;
-  std::vector<Index> piece_;
-  std::vector<double> error_;
+  std::vector<Facet> facets_;
   std::vector<Tile> pieces_;
   std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
   bool errors_whole_ = false;  // also those above the tolerance
@@ -196,11 +207,10 @@ class MeshRefinement {
 void MeshRefinement::place_roots() {
   const std::vector<PatchId>& roots = complex_.root_patches();
   constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
-  at_.assign(roots.size(), corners);
-  error_.assign(roots.size(), INFINITY);
+  facets_.reserve(roots.size());
   pieces_.reserve(roots.size());
   for (std::size_t t = 0; t < roots.size(); ++t) {
-    piece_.push_back(static_cast<Index>(t));
+    facets_.push_back({corners, static_cast<Index>(t)});
     pieces_.push_back({roots[t].value(), {}, false, false, false, {}});
     for (std::size_t k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[complex_.corners(t)[k]];
@@ -234,7 +244,7 @@ void MeshRefinement::evaluate(std::size_t begin, std::size_t end) {
   parallel_for_with(
       end - begin, run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t from, std::size_t to) {
-        monitor_.checkpoint();
+        monitor_of(run_).checkpoint();
         for (std::size_t i = begin + from; i < begin + to;) {
           if (vertices_[i].patch == UINT32_MAX) {
             ++i;
@@ -257,7 +267,7 @@ void MeshRefinement::evaluate(std::size_t begin, std::size_t end) {
 
 FlatTriangle MeshRefinement::flat(Index t) const {
   const std::array<Index, 3>& corners = complex_.corners(t);
-  return {{scaled(corners[0]), scaled(corners[1]), scaled(corners[2])}, at_[t]};
+  return {{scaled(corners[0]), scaled(corners[1]), scaled(corners[2])}, facets_[t].at};
 }
 
 void MeshRefinement::mark_sides(Index t) {
@@ -284,7 +294,7 @@ double MeshRefinement::thickness(const Patch& patch, const BoundingPoints& hull)
 
 // Finds the quadratic of a piece that is still one triangle; where it is coarse, the triangle's error.
 void MeshRefinement::learn(Worker& worker, Index t) {
-  Tile& piece = pieces_[piece_[t]];
+  Tile& piece = piece_of(t);
   const Patch& patch = worker.patch(piece.patch, piece.path);
   BoundsCache& library = surface_.library();
   if (patch.kind->cacheable() || limits_.max_thickness < INFINITY)
@@ -300,23 +310,23 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.path);
   if (!piece.coarse) return;
   const FlatTriangle triangle = flat(t);
-  error_[t] = near.error < INFINITY ? piece.quadratic.flatness(triangle).error : INFINITY;
+  double& error = facets_[t].error;
+  error = near.error < INFINITY ? piece.quadratic.flatness(triangle).error : INFINITY;
   // Where the quadratic itself is too far away there is nothing to be gained.
-  if (error_[t] > tolerance(t) && !(error_[t] - 2 * near.error > tolerance(t))) {
+  if (error > tolerance(t) && !(error - 2 * near.error > tolerance(t))) {
     const ErrorUse use_here = whole ? ErrorUse{} : ErrorUse{.useless = tolerance(t)};
-    error_[t] =
-        std::min(error_[t], distance_to_triangle(library, patch, worker.hull, triangle.corner, use_here));
+    error = std::min(error, distance_to_triangle(library, patch, worker.hull, triangle.corner, use_here));
   }
 }
 
 void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
-  Tile& piece = pieces_[piece_[t]];
+  Tile& piece = piece_of(t);
   if (!piece.known) learn(worker, t);
   if (!piece.coarse) {
     const Flatness flatness = piece.quadratic.flatness(flat(t));
-    error_[t] = flatness.error;
+    facets_[t].error = flatness.error;
     if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
-  } else if (mark && (piece.thick || error_[t] > tolerance(t))) {
+  } else if (mark && (piece.thick || facets_[t].error > tolerance(t))) {
     if (piece.path.level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
     mark_sides(t);
   }
@@ -324,12 +334,12 @@ void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
 
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
 void MeshRefinement::mark_bent(Index t, const Flatness& flatness) {
-  const double taken = pieces_[piece_[t]].quadratic.error() + flatness.corner_gap,
+  const double taken = piece_of(t).quadratic.error() + flatness.corner_gap,
                left = std::max(tolerance(t) - taken, tolerance(t) / 4);
   std::array<double, 3> bow_sq;
   for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
   const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
-  const TriangleParameter a = at_[t][most], b = at_[t][(most + 1) % 3];
+  const TriangleParameter a = facets_[t].at[most], b = facets_[t].at[(most + 1) % 3];
   if (std::max(std::fabs(a.u - b.u), std::fabs(a.v - b.v)) <= shortest_side) {
     return stuck_.store(true, std::memory_order_relaxed);
   }
@@ -351,10 +361,10 @@ void MeshRefinement::mark_long(Worker& worker, Index t) {
 }
 
 void MeshRefinement::mark_turning(Worker& worker, Index t) {
-  const Index patch = pieces_[piece_[t]].patch;
+  const Index patch = piece_of(t).patch;
   std::array<std::optional<Vector3>, 3> normal;
   for (std::size_t k = 0; k < 3; ++k) {
-    normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), at_[t][k])).normal;
+    normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), facets_[t].at[k])).normal;
   }
   const std::array<Point3, 3> corner = flat(t).corner;
   bool turns = false;
@@ -380,13 +390,13 @@ void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
       triangles.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-          if (i % 256 == 0) monitor_.checkpoint();
+          if (i % 256 == 0) monitor_of(run_).checkpoint();
           examine(worker, triangles[i], mark);
         }
       });
   refuse_if_stuck();
   for (const Index t : triangles) {
-    if (pieces_[piece_[t]].coarse) coarse_.push_back(t);
+    if (piece_of(t).coarse) coarse_.push_back(t);
   }
 }
 
@@ -410,15 +420,14 @@ std::uint64_t MeshRefinement::count_after() const {
 
 // Which way to cut: lines inside that are less bent, and where none is bent shorter ones.
 std::size_t MeshRefinement::choose(Index t, unsigned marks) const {
-  const Tile& piece = pieces_[piece_[t]];
+  const Tile& piece = piece_of(t);
   const std::size_t choices = split_count(marks);
   if (piece.coarse || choices == 1) return 0;
   std::array<TriangleParameter, 6> at;
   std::array<Point3, 6> point;
   for (std::size_t k = 0; k < 3; ++k) {
-    const TriangleParameter a = at_[t][k], b = at_[t][(k + 1) % 3];
-    at[k] = a;
-    at[3 + k] = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
+    at[k] = facets_[t].point(k);
+    at[3 + k] = facets_[t].point(3 + k);
     point[k] = scaled(complex_.corners(t)[k]);
     const TriangleComplex::Edge& edge = complex_.edge(complex_.edge_of(t, k));
     if (edge.halves != TriangleComplex::none) point[3 + k] = scaled(complex_.edge(edge.halves).to);
@@ -455,7 +464,7 @@ std::vector<MeshRefinement::Cut> MeshRefinement::plan_cuts() {
   for (Index t = 0; t < old; ++t) {
     const std::size_t marks = number_of_bits[complex_.marks(t)];
     if (marks == 0) continue;
-    const bool coarse = pieces_[piece_[t]].coarse;
+    const bool coarse = piece_of(t).coarse;
     cuts.push_back({t, static_cast<Index>(old + triangles), static_cast<Index>(complex_.edge_count() + edges),
                     static_cast<Index>(pieces)});
     triangles += marks;
@@ -463,34 +472,25 @@ std::vector<MeshRefinement::Cut> MeshRefinement::plan_cuts() {
     pieces += coarse ? 4 : 0;
   }
   complex_.extend(triangles, edges);
-  at_.resize(old + triangles);
-  piece_.resize(old + triangles);
-  error_.resize(old + triangles, INFINITY);
+  facets_.resize(old + triangles);
   pieces_.resize(pieces);
   return cuts;
 }
 
 void MeshRefinement::carry_out(const Cut& cut) {
   const unsigned marks = complex_.marks(cut.triangle);
-  SNUG_EXPECT(marks == 7 || !pieces_[piece_[cut.triangle]].coarse);
+  SNUG_EXPECT(marks == 7 || !piece_of(cut.triangle).coarse);
   const TriangleSplit shape = split_of(marks, choose(cut.triangle, marks));
   complex_.cut(cut.triangle, shape, cut.first_new, cut.first_edge);
-  const std::array<TriangleParameter, 3> corner = at_[cut.triangle];
-  const Index whole = piece_[cut.triangle];
-  const auto local = [&](std::size_t p) -> TriangleParameter {
-    if (p < 3) return corner[p];
-    const TriangleParameter a = corner[p - 3], b = corner[(p - 2) % 3];
-    return {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
-  };
+  const Facet whole = facets_[cut.triangle];
+  const Tile& parent = pieces_[whole.piece];
   for (unsigned i = 0; i < shape.count; ++i) {
     const Index t = i == 0 ? cut.triangle : cut.first_new + i - 1;
-    for (std::size_t k = 0; k < 3; ++k) at_[t][k] = local(shape.triangles[i][k]);
-    piece_[t] = whole;
-    error_[t] = INFINITY;
-    if (!pieces_[whole].coarse) continue;
-    const Tile& parent = pieces_[whole];
-    piece_[t] = cut.first_piece + i;
-    pieces_[piece_[t]] = {parent.patch, parent.path.child(i), false, false, false, {}};
+    const auto& [p, q, r] = shape.triangles[i];
+    facets_[t] = {{whole.point(p), whole.point(q), whole.point(r)}, whole.piece};
+    if (!parent.coarse) continue;
+    facets_[t].piece = cut.first_piece + i;
+    piece_of(t) = {parent.patch, parent.path.child(i), false, false, false, {}};
   }
 }
 
@@ -498,8 +498,7 @@ void MeshRefinement::carry_out(const Cut& cut) {
 void MeshRefinement::split(std::vector<Index>& parts) {
   const std::size_t old = vertices_.size();
   complex_.number_middles([&](std::size_t t, std::size_t k) {
-    const TriangleParameter a = at_[t][k], b = at_[t][(k + 1) % 3];
-    vertices_.push_back({{}, {}, 0, pieces_[piece_[t]].patch, {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)}});
+    vertices_.push_back({{}, {}, 0, piece_of(t).patch, facets_[t].point(3 + k)});
   });
   evaluate(old, vertices_.size());
   const std::vector<Cut> cuts = plan_cuts();
@@ -513,7 +512,7 @@ void MeshRefinement::split(std::vector<Index>& parts) {
     for (std::size_t t = cuts[i].first_new; t < end; ++t) parts.push_back(static_cast<Index>(t));
   }
   complex_.clear_marks();
-  std::erase_if(coarse_, [&](Index t) { return !pieces_[piece_[t]].coarse; });
+  std::erase_if(coarse_, [&](Index t) { return !piece_of(t).coarse; });
 }
 
 bool MeshRefinement::run(std::uint64_t most) {
@@ -539,7 +538,7 @@ bool MeshRefinement::run(std::uint64_t most) {
     if (next == triangle_count()) return true;
     if (next > std::min(most, triangle_limit)) return false;
     done = std::max(done, 1 - static_cast<double>(active.size()) / static_cast<double>(next));
-    monitor_.report(done);
+    monitor_of(run_).report(done);
     split(active);
   }
 }
@@ -550,10 +549,10 @@ void MeshRefinement::find_errors() {
       triangle_count(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
-          if (t % 256 == 0) monitor_.checkpoint();
-          Tile& piece = pieces_[piece_[t]];
+          if (t % 256 == 0) monitor_of(run_).checkpoint();
+          Tile& piece = piece_of(t);
           // A coarse piece is one triangle, so no other thread has it.
-          if (error_[t] < INFINITY || !piece.coarse) continue;
+          if (facets_[t].error < INFINITY || !piece.coarse) continue;
           piece.known = false;
           prove(worker, static_cast<Index>(t), false);
         }
@@ -562,15 +561,15 @@ void MeshRefinement::find_errors() {
 
 double MeshRefinement::error_bound() const {
   double largest = 0;
-  for (const double error : error_) largest = std::max(largest, error);
+  for (const Facet& facet : facets_) largest = std::max(largest, facet.error);
   return unscaled_up(largest, back_);
 }
 
 void MeshRefinement::refuse_if_stuck() const {
   if (!stuck_.load()) return;
   double largest = 0;
-  for (std::size_t t = 0; t < error_.size(); ++t) {
-    if (pieces_[piece_[t]].path.level() >= deepest_level) largest = std::max(largest, error_[t]);
+  for (const Facet& facet : facets_) {
+    if (pieces_[facet.piece].path.level() >= deepest_level) largest = std::max(largest, facet.error);
   }
   char text[160];
   std::snprintf(
@@ -584,7 +583,7 @@ void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>&
   parallel_for_with(
       order.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
-        monitor_.checkpoint();
+        monitor_of(run_).checkpoint();
         for (std::size_t i = begin; i < end; ++i) {
           const LimitFrame frame = worker.evaluator(vertices_[order[i]].patch).frame(result.parameters[i]);
           result.normals[i] = frame.normal.value_or(Vector3{});
@@ -597,21 +596,21 @@ Tessellation MeshRefinement::result(std::vector<double>* errors) const {
   const std::size_t count = triangle_count();
   // Patch by patch.
   std::vector<std::size_t> begins(surface_.patch_count() + 1, 0);
-  for (std::size_t t = 0; t < count; ++t) ++begins[pieces_[piece_[t]].patch + 1];
+  for (std::size_t t = 0; t < count; ++t) ++begins[piece_of(t).patch + 1];
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
   result.triangles.resize(count);
   result.owners.resize(count);
   if (errors != nullptr) errors->resize(count);
   if (options_.corners) result.corners.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
-    const Index patch = pieces_[piece_[t]].patch;
+    const Index patch = piece_of(t).patch;
     const std::size_t place = begins[patch]++;
     result.triangles[place] = complex_.corners(t);
     result.owners[place] = surface_.place(PatchId(patch)).owner;
-    if (errors != nullptr) (*errors)[place] = unscaled_up(error_[t], back_);
+    if (errors != nullptr) (*errors)[place] = unscaled_up(facets_[t].error, back_);
     if (!options_.corners) continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      result.corners[place][k] = place_of(surface_, PatchId(patch), at_[t][k]);
+      result.corners[place][k] = place_of(surface_, PatchId(patch), facets_[t].at[k]);
     }
   }
   // Vertices in the order in which triangles name them.
