@@ -37,7 +37,7 @@ std::span<const PieceBuild> SurfaceBvh::piece_builds(std::span<const std::uint32
   thread_local Patch patch;
   for (std::size_t i = 0; i < items.size(); ++i) {
     surface_->patch(patches_[items[i]], patch);
-    pieces[i] = build_piece(surface_->library(), patch, method_);
+    pieces[i] = build_piece(surface_->library(), patch, options_.method);
   }
   return std::span(pieces).first(items.size());
 }
@@ -95,7 +95,7 @@ std::size_t SurfaceBvh::Leaves::bytes() const {
   return nodes_.size() * sizeof(void*) + count_ * sizeof(LeafNode) + unused_.capacity() * sizeof(void*);
 }
 
-WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
+WideBvh SurfaceBvh::make_tree(const WorkMonitor& monitor) {
   const auto fit_to_control = [surface = surface_, patches = patches_.data()](
                                   std::size_t, std::span<const std::uint32_t> items,
                                   std::vector<Obb>& boxes) {
@@ -105,29 +105,29 @@ WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonito
     hull.assign(*surface, std::span(members).first(items.size()));
     boxes.push_back(hull.box());
   };
-  if (!options.tight && patches_.size() >= options.min_lazy) {
-    return {control_balls(*surface_, patches_), fit_to_control, options.part_level};
+  if (!options_.tight && patches_.size() >= options_.min_lazy) {
+    return {control_balls(*surface_, patches_), fit_to_control, options_.part_level};
   }
-  if (options.tight) return make_tight_tree(options, monitor);
+  if (options_.tight) return make_tight_tree(monitor);
   std::vector<Point3> centres;
   centres.reserve(patches_.size());
   for (const PatchId p : patches_) centres.push_back(surface_->middle(p));
-  return {centres, options.threads,
+  return {centres, options_.threads,
           [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
             monitor.checkpoint();
             fit_to_control(leaf, items, boxes);
           }};
 }
 
-WideBvh SurfaceBvh::make_tight_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
+WideBvh SurfaceBvh::make_tight_tree(const WorkMonitor& monitor) {
   std::vector<PieceBuild> pieces(patches_.size());
   std::vector<FittedSet> sets(patches_.size());
-  parallel_for(patches_.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for(patches_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
     Patch patch;
     for (std::size_t i = begin; i < end; ++i) {
       if (i % 64 == 0) monitor.checkpoint();
       surface_->patch(patches_[i], patch);
-      pieces[i] = build_piece(surface_->library(), patch, method_);
+      pieces[i] = build_piece(surface_->library(), patch, options_.method);
       sets[i] = fitted_set(pieces[i]);
     }
   });
@@ -144,12 +144,10 @@ WideBvh SurfaceBvh::make_tight_tree(const SurfaceBvhOptions& options, const Work
 SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options,
                        const WorkMonitor& monitor)
     : surface_(&surface),
-      method_(options.method),
-      threads_(options.threads),
-      max_looser_(options.max_looser),
+      options_(options),
       patches_(existing_patches(surface)),
       leaves_(std::make_unique<Leaves>((patches_.size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size)),
-      tree_(make_tree(options, monitor)),
+      tree_(make_tree(monitor)),
       solid_(std::make_unique<Lazy<Solid>>()) {
   find_extents();
 }
@@ -169,9 +167,7 @@ std::shared_ptr<const RefitPlan> plan_for(const LimitSurface& surface, SharedPla
 
 SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options, SharedPlan& plan)
     : surface_(&surface),
-      method_(options.method),
-      threads_(options.threads),
-      max_looser_(options.max_looser),
+      options_(options),
       plan_(plan_for(surface, plan, options.threads)),
       patches_(plan_->patches()),
       leaves_(std::make_unique<Leaves>(plan_->order().leaf_count())),
@@ -190,9 +186,9 @@ void SurfaceBvh::refit(SharedPlan& plan) {
   };
   leaves_->clear();
   solid_->clear();
-  const double looseness = refit_by(plan_for(*surface_, plan, threads_));
-  if (looseness > max_looser_ * plan_->looseness()) {
-    auto better = std::make_shared<const RefitPlan>(*surface_, patches_, threads_);
+  const double looseness = refit_by(plan_for(*surface_, plan, options_.threads));
+  if (looseness > options_.max_looser * plan_->looseness()) {
+    auto better = std::make_shared<const RefitPlan>(*surface_, patches_, options_.threads);
     plan.set(better);
     refit_by(std::move(better));
   }

@@ -47,7 +47,7 @@ class SurfaceBvh {
   void refit(SharedPlan& plan);
 
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
-  [[nodiscard]] BoundMethod method() const { return method_; }
+  [[nodiscard]] BoundMethod method() const { return options_.method; }
   [[nodiscard]] const WideBvh& tree() const { return tree_; }
   /// Bounds of the patches of a leaf, made on first use.
   [[nodiscard]] const LeafNode& leaf(std::uint32_t i) const {
@@ -98,15 +98,13 @@ class SurfaceBvh {
     std::size_t count_ = 0;  // of those made, be they in use or not
   };
   [[nodiscard]] std::span<const PieceBuild> piece_builds(std::span<const std::uint32_t> items) const;
-  [[nodiscard]] WideBvh make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
-  [[nodiscard]] WideBvh make_tight_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
+  [[nodiscard]] WideBvh make_tree(const WorkMonitor& monitor);
+  [[nodiscard]] WideBvh make_tight_tree(const WorkMonitor& monitor);
   const LeafNode& make_leaf(std::uint32_t i) const;
   void find_extents();
 
   const LimitSurface* surface_;
-  BoundMethod method_;
-  int threads_;
-  double max_looser_;
+  SurfaceBvhOptions options_;
   std::shared_ptr<const RefitPlan> plan_;  // that tree_ has its order from; null where it was built
   std::vector<PatchId> patches_;
   std::unique_ptr<Leaves> leaves_;
