@@ -120,11 +120,9 @@ SweptPairs::Sample SweptPairs::sample(double time) const {
 double SweptPairs::clear(double from, double to, double least, std::uint64_t budget,
                          const WorkMonitor& monitor) {
   until_ = from;
-  min_ = least;
-  budget_ = budget;
+  shortest_ = least;
+  budget_ = {budget, stats_.splits};
   monitor_ = &monitor;
-  steps_ = 0;
-  splits_before_ = stats_.splits;
   if (!possible_) return from;
   for (const SweptBody& body : bodies_) body.scratch.begin();
   clear(sample(from), sample(to), {{bodies_[0].scratch.root(), bodies_[1].scratch.root()}});
@@ -135,11 +133,11 @@ bool SweptPairs::clear(const Sample& first, const Sample& last, std::vector<Node
   const double time = first.time + (last.time - first.time) / 2;
   const Sample middle = sample(time);
   const Step step{first, middle, last};
-  const bool shortest = last.time - first.time <= min_ || time <= first.time || time >= last.time;
+  const bool shortest = last.time - first.time <= shortest_ || time <= first.time || time >= last.time;
   std::vector<Nodes> left;
   while (!open_pairs.empty()) {
-    if (spent() >= budget_) return false;
-    ++steps_;
+    if (spent() >= budget_.most) return false;
+    ++budget_.steps;
     monitor_->checkpoint();
     Pair pair = pair_of(open_pairs.back(), step);
     open_pairs.pop_back();

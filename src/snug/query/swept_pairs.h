@@ -33,7 +33,7 @@ class SweptPairs {
   [[nodiscard]] double clear(double from, double to, double least, std::uint64_t budget,
                              const WorkMonitor& monitor);
   /// Work that clear() has spent.
-  [[nodiscard]] std::uint64_t spent() const { return steps_ + (stats_.splits - splits_before_); }
+  [[nodiscard]] std::uint64_t spent() const { return budget_.spent(stats_); }
 
  private:
   using Nodes = std::array<Node, 2>;
@@ -46,6 +46,13 @@ class SweptPairs {
     double place_doubt = 0;
     std::array<double, 2> turn_doubt{};  // of such directions
     std::array<double, 3> height_doubt{};
+  };
+  // Of one call of clear(), for pairs compared and splits.
+  struct Budget {
+    std::uint64_t most = 0, splits_before = 0, steps = 0;
+    [[nodiscard]] std::uint64_t spent(const SearchStats& stats) const {
+      return steps + (stats.splits - splits_before);
+    }
   };
   struct Step;  // from one time to another
   struct Pair;  // what is known of two nodes in a step
@@ -74,8 +81,8 @@ class SweptPairs {
   std::array<SweptMotion, 2> motions_;
   double closing_ = 0;
   bool possible_ = false;
-  double min_ = 0, until_ = 0;
-  std::uint64_t budget_ = 0, steps_ = 0, splits_before_ = 0;
+  double shortest_ = 0, until_ = 0;
+  Budget budget_;
   const WorkMonitor* monitor_ = nullptr;
 };
 
