@@ -173,6 +173,31 @@ TEST(closest, of_points_some_sizes_away_is_as_narrow_as_asked) {
   }
 }
 
+// Plane quads that are no parallelograms: no part of one need be split for its set, but points lie elsewhere than in a triangle.
+TEST(closest, of_plane_quads_is_as_narrow_as_asked) {
+  std::mt19937_64 random(5);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int quad = 0; quad < 40; ++quad) {
+    const Point3 apex{unit() - 0.5, 1 + unit(), unit()};
+    const double left = 0.1 + 0.8 * unit(), right = 0.1 + 0.8 * unit();
+    const Point3 a{-1, 0, 0}, b{1, 0, quad % 2 == 0 ? 0.0 : unit()};
+    ControlMesh mesh;
+    mesh.points = {a, b, b + right * (apex - b), a + left * (apex - a)};
+    mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
+    const Surface surface(mesh, {.scheme = Scheme::bilinear});
+    for (int k = 0; k < 20; ++k) {
+      const Point3 to{3 * unit() - 1.5, 3 * unit() - 1, k % 4 == 0 ? 0 : unit() - 0.5};
+      for (const WitnessKind witness : {WitnessKind::exact, WitnessKind::approximate}) {
+        for (const double absolute : {1e-1, 1e-2, 1e-4, 1e-6, 1e-9}) {
+          const ClosestPoint found =
+              closest_point(surface, to, {.absolute = absolute, .witness = witness}, {.max_splits = 2000});
+          EXPECT_EQ(found.outcome, Outcome::complete) << quad << ", " << k << ", " << absolute;
+        }
+      }
+    }
+  }
+}
+
 // Many points at once, in any number of threads: bit for bit what each gives alone.
 TEST(closest, many_in_threads_are_the_same_as_one_by_one) {
   testing::Trials trials;

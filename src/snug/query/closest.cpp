@@ -77,8 +77,9 @@ class ClosestSearch {
       if (gap_ >= bounds_.prune_distance()) return pruned();
       if (!PieceCache::can_open(at.node)) {
         // Single precision is what is left of it.
-        gap_ = std::max(gap_, gap_of_triangle(at.node, cache_.offset(at.node)));
-        return pruned();
+        const OffsetTriangle& offset = cache_.offset(at.node);
+        gap_ = std::max(gap_, gap_of_triangle(at.node, offset));
+        if (!points_are_elsewhere(at.node, offset.radius)) return pruned();
       }
     }
     if (splits_ < max_splits_ && !cache_.full()) return Verb::open;
@@ -141,6 +142,14 @@ class ClosestSearch {
     return gap;
   }
 
+  // Is the nearest point of a flat piece not where its parameters say, as in a plane quad that is no parallelogram? Parts of it
+  // come as near as wanted.
+  bool points_are_elsewhere(const Node& node, double radius) {
+    const double doubt = 16 * (radius + point_noise * (2 + max_abs(to_.at - Point3{})));
+    return gap_ < bounds_.prune_distance() && bounds_.upper() - gap_ > doubt &&
+           cache_.name(node).path.level() < PiecePath::max_level;
+  }
+
   // The limit point at a parameter, if none as near is known.
   void take(const Node& node, TriangleParameter at) {
     const Patch& patch = cache_.patch(node);
@@ -170,16 +179,18 @@ class ClosestSearch {
   }
 
   ClosestPoint result() {
-    if (nearest_ && bounds_.upper() < closest_.distance) {
-      if (options_.witness == WitnessKind::exact) {
-        take(nearest_->node, nearest_->at);
-      } else {
-        take_near(nearest_->node, nearest_->at);
-      }
-    }
     const PowerOfTwo back = surface().scale().inverse();
-    const Interval distance{unscaled_down(std::max(0.0, bounds_.lower()), back),
-                            require_representable(unscaled_up(bounds_.upper(), back))};
+    const auto in_mesh_units = [&] {
+      return Interval(unscaled_down(std::max(0.0, bounds_.lower()), back),
+                      require_representable(unscaled_up(bounds_.upper(), back)));
+    };
+    if (nearest_ && bounds_.upper() < closest_.distance) {
+      // A limit point may be nearer than what is known of it.
+      const bool near = options_.witness != WitnessKind::exact && near_enough(in_mesh_units(), options_);
+      if (near) take_near(nearest_->node, nearest_->at);
+      if (!near) take(nearest_->node, nearest_->at);
+    }
+    const Interval distance = in_mesh_units();
     const BoundedPoint closest = unscaled(closest_.point, back);
     return {{closest.position, closest.error, closest_.at},
             distance,
