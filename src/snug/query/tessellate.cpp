@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <string>
 #include <utility>
 
@@ -40,19 +41,18 @@ constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
 
 struct Vertex {
   Point3 written;  // in mesh units
-  Point3 scaled;
-  double error = 0;          // a coordinate, in scaled units
-  Index patch = UINT32_MAX;  // and where on it it is
   TriangleParameter at;
+  double error = 0;          // a coordinate, in scaled units
+  Index patch = UINT32_MAX;  // that it lies on
 };
 
 // A piece of a root patch by splits in four. Where its quadratic is `coarse` only the triangle of the whole
 // piece is proved, and it is split in four or not at all.
 struct Tile {
-  Index patch;
   PiecePath path;
+  Index patch;
+  Index quadratic = UINT32_MAX;  // unless coarse, once it is known
   bool known = false, coarse = false, thick = false;
-  PieceQuadratic quadratic;
 };
 
 // A triangle of the mesh, on a piece.
@@ -150,8 +150,8 @@ class MeshRefinement {
   [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
   // Upper bound over all triangles, in mesh units.
   [[nodiscard]] double error_bound() const;
-  /// Also the errors of triangles, in mesh units, if asked for.
-  [[nodiscard]] Tessellation result(std::vector<double>* errors = nullptr) const;
+  // Also the errors of triangles, in mesh units, if asked for. Nothing may be asked afterwards.
+  [[nodiscard]] Tessellation take_result(std::vector<double>* errors = nullptr);
 
  private:
   struct Cut {
@@ -163,6 +163,7 @@ class MeshRefinement {
   void evaluate(std::size_t begin, std::size_t end);
   void examine(const std::vector<Index>& triangles, bool mark);
   void examine(Worker& worker, Index t, bool mark);
+  void make_room_for_quadratics(const std::vector<Index>& triangles);
   void prove(Worker& worker, Index t, bool mark);
   [[nodiscard]] double seen_tolerance(Index t) const;
   [[nodiscard]] static double thickness(const Patch& patch, const BoundingPoints& hull);
@@ -185,7 +186,7 @@ class MeshRefinement {
     if (limits_.of_owner.empty()) return limits_.tolerance;
     return limits_.of_owner[surface_.place(PatchId(piece_of(t).patch)).owner];
   }
-  [[nodiscard]] const Point3& scaled(Index v) const { return vertices_[v].scaled; }
+  [[nodiscard]] Point3 scaled(Index v) const { return surface_.scale().apply(vertices_[v].written); }
   void finish(Vertex& vertex, const BoundedPoint& point) const;
   void refuse_if_stuck() const;
   void add_normals(Tessellation& result, const std::vector<Index>& order) const;
@@ -197,8 +198,10 @@ class MeshRefinement {
   PowerOfTwo back_;
   TriangleComplex complex_;
   std::vector<Vertex> vertices_;
-  std::vector<Facet> facets_;
+  std::deque<Facet> facets_;  // without room to spare, which would be most of the memory
   std::vector<Tile> pieces_;
+  std::deque<PieceQuadratic> quadratics_;  // of pieces; others are free
+  std::vector<Index> free_quadratics_;
   std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
   bool errors_whole_ = false;  // also those above the tolerance
   std::atomic<bool> stuck_{false};
@@ -207,14 +210,13 @@ class MeshRefinement {
 void MeshRefinement::place_roots() {
   const std::vector<PatchId>& roots = complex_.root_patches();
   constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
-  facets_.reserve(roots.size());
   pieces_.reserve(roots.size());
   for (std::size_t t = 0; t < roots.size(); ++t) {
     facets_.push_back({corners, static_cast<Index>(t)});
-    pieces_.push_back({roots[t].value(), {}, false, false, false, {}});
+    pieces_.push_back({{}, roots[t].value()});
     for (std::size_t k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[complex_.corners(t)[k]];
-      if (vertex.patch == UINT32_MAX) vertex = {{}, {}, 0, roots[t].value(), corners[k]};
+      if (vertex.patch == UINT32_MAX) vertex = {{}, corners[k], 0, roots[t].value()};
     }
   }
   evaluate(0, vertices_.size());
@@ -235,8 +237,7 @@ void MeshRefinement::finish(Vertex& vertex, const BoundedPoint& point) const {
     }
   }
   vertex.written = require_representable(written);
-  vertex.scaled = surface_.scale().apply(written);
-  const Vector3 moved = vertex.scaled - point.position;
+  const Vector3 moved = surface_.scale().apply(written) - point.position;
   vertex.error = enlarged(point.error + max_abs(moved));
 }
 
@@ -307,11 +308,13 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   piece.known = true;
   if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
   piece.coarse = piece.thick || !(near.error <= most) || !(near.error < INFINITY);
-  if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.path);
-  if (!piece.coarse) return;
+  if (!piece.coarse) {
+    quadratics_[piece.quadratic] = PieceQuadratic(near, piece.path);
+    return;
+  }
   const FlatTriangle triangle = flat(t);
   double& error = facets_[t].error;
-  error = near.error < INFINITY ? piece.quadratic.flatness(triangle).error : INFINITY;
+  error = near.error < INFINITY ? PieceQuadratic(near, piece.path).flatness(triangle).error : INFINITY;
   // Where the quadratic itself is too far away there is nothing to be gained.
   if (error > tolerance(t) && !(error - 2 * near.error > tolerance(t))) {
     const ErrorUse use_here = whole ? ErrorUse{} : ErrorUse{.useless = tolerance(t)};
@@ -323,7 +326,7 @@ void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
   Tile& piece = piece_of(t);
   if (!piece.known) learn(worker, t);
   if (!piece.coarse) {
-    const Flatness flatness = piece.quadratic.flatness(flat(t));
+    const Flatness flatness = quadratics_[piece.quadratic].flatness(flat(t));
     facets_[t].error = flatness.error;
     if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
   } else if (mark && (piece.thick || facets_[t].error > tolerance(t))) {
@@ -334,7 +337,7 @@ void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
 
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
 void MeshRefinement::mark_bent(Index t, const Flatness& flatness) {
-  const double taken = piece_of(t).quadratic.error() + flatness.corner_gap,
+  const double taken = quadratics_[piece_of(t).quadratic].error() + flatness.corner_gap,
                left = std::max(tolerance(t) - taken, tolerance(t) / 4);
   std::array<double, 3> bow_sq;
   for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
@@ -386,6 +389,7 @@ void MeshRefinement::examine(Worker& worker, Index t, bool mark) {
 }
 
 void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
+  make_room_for_quadratics(triangles);
   parallel_for_with(
       triangles.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
@@ -396,7 +400,25 @@ void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
       });
   refuse_if_stuck();
   for (const Index t : triangles) {
-    if (piece_of(t).coarse) coarse_.push_back(t);
+    Tile& piece = piece_of(t);
+    if (!piece.coarse) continue;
+    coarse_.push_back(t);
+    if (piece.quadratic != UINT32_MAX) free_quadratics_.push_back(std::exchange(piece.quadratic, UINT32_MAX));
+  }
+}
+
+// For pieces that are not known yet, each of which may turn out to have one.
+void MeshRefinement::make_room_for_quadratics(const std::vector<Index>& triangles) {
+  for (const Index t : triangles) {
+    Tile& piece = piece_of(t);
+    if (piece.known || piece.quadratic != UINT32_MAX) continue;
+    if (free_quadratics_.empty()) {
+      piece.quadratic = static_cast<Index>(quadratics_.size());
+      quadratics_.emplace_back();
+    } else {
+      piece.quadratic = free_quadratics_.back();
+      free_quadratics_.pop_back();
+    }
   }
 }
 
@@ -434,7 +456,7 @@ std::size_t MeshRefinement::choose(Index t, unsigned marks) const {
   }
   const double slight = limits_.tolerance < INFINITY ? limits_.tolerance / 4 : 0;
   const auto bend = [&](std::size_t p, std::size_t q) {
-    return std::max(slight, length(piece.quadratic.bow(at[p], at[q])));
+    return std::max(slight, length(quadratics_[piece.quadratic].bow(at[p], at[q])));
   };
   const auto size = [&](std::size_t p, std::size_t q) { return length_sq(point[p] - point[q]); };
   if (choices == 2) {
@@ -490,7 +512,7 @@ void MeshRefinement::carry_out(const Cut& cut) {
     facets_[t] = {{whole.point(p), whole.point(q), whole.point(r)}, whole.piece};
     if (!parent.coarse) continue;
     facets_[t].piece = cut.first_piece + i;
-    piece_of(t) = {parent.patch, parent.path.child(i), false, false, false, {}};
+    piece_of(t) = {parent.path.child(i), parent.patch};
   }
 }
 
@@ -498,7 +520,7 @@ void MeshRefinement::carry_out(const Cut& cut) {
 void MeshRefinement::split(std::vector<Index>& parts) {
   const std::size_t old = vertices_.size();
   complex_.number_middles([&](std::size_t t, std::size_t k) {
-    vertices_.push_back({{}, {}, 0, piece_of(t).patch, facets_[t].point(3 + k)});
+    vertices_.push_back({{}, facets_[t].point(3 + k), 0, piece_of(t).patch});
   });
   evaluate(old, vertices_.size());
   const std::vector<Cut> cuts = plan_cuts();
@@ -545,18 +567,14 @@ bool MeshRefinement::run(std::uint64_t most) {
 
 void MeshRefinement::find_errors() {
   errors_whole_ = true;
-  parallel_for_with(
-      triangle_count(), run_.threads, [&] { return Worker(surface_); },
-      [&](Worker& worker, std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-          if (t % 256 == 0) monitor_of(run_).checkpoint();
-          Tile& piece = piece_of(t);
-          // A coarse piece is one triangle, so no other thread has it.
-          if (facets_[t].error < INFINITY || !piece.coarse) continue;
-          piece.known = false;
-          prove(worker, static_cast<Index>(t), false);
-        }
-      });
+  std::vector<Index> unknown;
+  for (Index t = 0; t < triangle_count(); ++t) {
+    Tile& piece = piece_of(t);
+    if (facets_[t].error < INFINITY || !piece.coarse) continue;
+    piece.known = false;
+    unknown.push_back(t);
+  }
+  examine(unknown, false);
 }
 
 double MeshRefinement::error_bound() const {
@@ -591,30 +609,41 @@ void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>&
       });
 }
 
-Tessellation MeshRefinement::result(std::vector<double>* errors) const {
+// What is needed no more goes before the result comes: both are largest now.
+Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
   Tessellation result;
+  result.error_bound = error_bound();
   const std::size_t count = triangle_count();
+  std::vector<Index> patches(pieces_.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = pieces_[i].patch;
+  pieces_ = std::vector<Tile>();
+  quadratics_ = {};
+  std::vector<std::array<Index, 3>> corners = complex_.take_corners();
   // Patch by patch.
   std::vector<std::size_t> begins(surface_.patch_count() + 1, 0);
-  for (std::size_t t = 0; t < count; ++t) ++begins[piece_of(t).patch + 1];
+  for (const Facet& facet : facets_) ++begins[patches[facet.piece] + 1];
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
   result.triangles.resize(count);
   result.owners.resize(count);
   if (errors != nullptr) errors->resize(count);
   if (options_.corners) result.corners.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
-    const Index patch = piece_of(t).patch;
-    const std::size_t place = begins[patch]++;
-    result.triangles[place] = complex_.corners(t);
-    result.owners[place] = surface_.place(PatchId(patch)).owner;
-    if (errors != nullptr) (*errors)[place] = unscaled_up(facets_[t].error, back_);
+    const Facet& facet = facets_[t];
+    const PatchId patch(patches[facet.piece]);
+    const std::size_t place = begins[patch.value()]++;
+    result.triangles[place] = corners[t];
+    result.owners[place] = surface_.place(patch).owner;
+    if (errors != nullptr) (*errors)[place] = unscaled_up(facet.error, back_);
     if (!options_.corners) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      result.corners[place][k] = place_of(surface_, PatchId(patch), facets_[t].at[k]);
-    }
+    for (std::size_t k = 0; k < 3; ++k) result.corners[place][k] = place_of(surface_, patch, facet.at[k]);
   }
+  facets_ = {};
+  corners = std::vector<std::array<Index, 3>>();
   // Vertices in the order in which triangles name them.
   std::vector<Index> number(vertices_.size(), UINT32_MAX), order;
+  order.reserve(vertices_.size());
+  result.positions.reserve(vertices_.size());
+  result.parameters.reserve(vertices_.size());
   double position_error = 0;
   for (std::array<Index, 3>& triangle : result.triangles) {
     for (Index& v : triangle) {
@@ -630,7 +659,6 @@ Tessellation MeshRefinement::result(std::vector<double>* errors) const {
     }
   }
   result.position_error = unscaled_up(position_error, back_);
-  result.error_bound = error_bound();
   if (options_.normals) add_normals(result, order);
   return result;
 }
@@ -731,9 +759,9 @@ class CountSearch {
     if (!refinement.run(max_triangles_) || refinement.triangle_count() > max_triangles_) return false;
     const double error = surface_.scale().apply(refinement.error_bound());
     if (!best_ || error < error_) {
-      best_ = refinement.result();
       error_ = error;
       count_ = refinement.triangle_count();
+      best_ = refinement.take_result();
     }
     return true;
   }
@@ -783,7 +811,7 @@ Tessellation tessellate(const Surface& handle, const TessellateOptions& options,
   MeshRefinement refinement(surface, options, limits, run);
   const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
   if (!reached) refinement.find_errors();
-  Tessellation result = refinement.result();
+  Tessellation result = refinement.take_result();
   result.outcome = outcome_of(reached, true);
   return result;
 }
@@ -800,7 +828,7 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
   if (!reached) refinement.find_errors();
   LocalTessellation result;
-  result.mesh = refinement.result(&result.errors);
+  result.mesh = refinement.take_result(&result.errors);
   result.mesh.outcome = outcome_of(reached, true);
   return result;
 }

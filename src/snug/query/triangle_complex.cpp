@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <tuple>
+#include <utility>
 
 #include <snug/surface/patch_sides.h>
 #include <support/contract.h>
@@ -182,6 +183,13 @@ void TriangleComplex::extend(std::size_t triangles, std::size_t edges) {
   sides_.resize(sides_.size() + triangles);
   edges_.resize(edges_.size() + edges);
   marks_.resize(marks_.size() + edges, 0);
+}
+
+std::vector<std::array<TriangleComplex::Index, 3>> TriangleComplex::take_corners() {
+  edges_ = std::vector<Edge>();
+  marks_ = std::vector<std::uint8_t>();
+  sides_ = std::vector<Sides>();
+  return std::move(corners_);
 }
 
 void TriangleComplex::cut(std::size_t t, const TriangleSplit& split, std::size_t first_new,

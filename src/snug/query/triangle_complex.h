@@ -81,6 +81,8 @@ class TriangleComplex {
   [[nodiscard]] static std::size_t inner_edges(const TriangleSplit& split) { return split.count - 1u; }
   /// Forgets all marks.
   void clear_marks();
+  /// The corners of all triangles; nothing else may be asked afterwards.
+  [[nodiscard]] std::vector<std::array<Index, 3>> take_corners();
 
  private:
   Index middle(Index side) const { return edges_[edges_[side / 2].halves].to; }
