@@ -6,18 +6,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace snug::command {
 namespace {
 
-// Of the tolerance: those of the tessellations that are simplified. The first is 1, of which there is a tessellation already;
-// of seven models coarser ones, or finer ones, made none smaller.
-constexpr std::array shares{1.0, 0.7, 0.5};
+// Of the tolerance: those of the tessellations that are simplified. Above 1 for what tessellate() proves may be more than the
+// deviation. The first is 1, of which there is a tessellation already.
+constexpr std::array shares{1.0, 0.7, 0.5, 1.4, 2.0, 0.25};
 // Of the tolerance: errors of meshoptimizer's own, which does not measure distances to the surface. They are halved in
-// logarithms until they are as near to each other as the last.
-constexpr double min_share = 1.0 / 16, max_share = 8, near_share = 1.1;
+// logarithms until two are so near to each other.
+constexpr double min_share = 1.0 / 16, max_share = 8, near_share = 1.02;
+// A tessellation of more triangles, where a comparison takes a second, is tried with the first shares alone, and coarser steps.
+constexpr std::size_t large = 10'000, shares_if_large = 3;
+constexpr double near_share_if_large = 1.1;
 
 // Indices and positions as meshoptimizer takes them: floats, about the middle.
 struct FloatMesh {
@@ -98,8 +102,11 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
     if (near) best = std::move(mesh);
     return near;
   };
+  const bool is_large = best.triangles.size() > large;
+  const std::span tried = std::span(shares).first(is_large ? shares_if_large : shares.size());
+  const double near_enough = is_large ? near_share_if_large : near_share;
   int done = -1;  // shares
-  for (const double share : shares) {
+  for (const double share : tried) {
     ++done;
     how.error = share * tolerance;
     Tessellation fine;
@@ -113,9 +120,10 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
     const FloatMesh floats(fine);
     // Halving in logarithms: what is near enough goes below, what is not above.
     double low = min_share * tolerance, high = max_share * tolerance;
-    while (high > near_share * low) {
+    if (share > 1 && !consider(fine)) high = low;
+    while (high > near_enough * low) {
       run.monitor->report((done + 1 - std::log(high / low) / std::log(max_share / min_share)) /
-                          shares.size());
+                          static_cast<double>(tried.size()));
       const double error = std::sqrt(low * high);
       (consider(part_of(fine, floats.simplified(error))) ? low : high) = error;
     }

@@ -41,7 +41,7 @@ struct Distance {
                                                       const DistanceOptions& options = {},
                                                       const Run& run = {});
 
-/// A limit point close to the closest one, in mesh units, at most distance.upper away; `at` is set.
+/// The limit point at `at`, which is set, or a point near it: close to the closest one, at most distance.upper away.
 struct ClosestPoint : LimitPoint {
   Interval distance{};  ///< contains the exact distance
   Outcome outcome = Outcome::complete;

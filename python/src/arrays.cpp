@@ -113,10 +113,12 @@ std::optional<double> length_of(const py::object& given, double size, const char
 
 WitnessKind witness_kind(const py::object& given) {
   if (given.is_none()) return WitnessKind::exact;
-  const std::string_view name = py::isinstance<py::str>(given) ? given.cast<std::string_view>() : "";
-  if (name == "none") return WitnessKind::none;
-  if (name == "approximate") return WitnessKind::approximate;
-  if (name == "exact") return WitnessKind::exact;
+  const auto is = [&](const char* name) {
+    return py::isinstance<py::str>(given) && PyUnicode_CompareWithASCIIString(given.ptr(), name) == 0;
+  };
+  if (is("none")) return WitnessKind::none;
+  if (is("approximate")) return WitnessKind::approximate;
+  if (is("exact")) return WitnessKind::exact;
   refuse("witness: " + py::repr(given).cast<std::string>() + " is none of 'none', 'approximate', 'exact'");
 }
 

@@ -95,6 +95,8 @@ def test_points_near_the_surface(cube):
     assert (np.abs(cube.evaluate(near.face, near.u, near.v, near.corner).point - near.point) <= near.error[:, None] + 1e-12).all()
     with pytest.raises(ValueError, match="witness: 'roughly' is none of"):
         cube.closest_point(points, witness="roughly")
+    with pytest.raises(ValueError):
+        cube.closest_point(points, witness="\ud800")
 
 
 def test_update(cube):

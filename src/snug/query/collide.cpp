@@ -118,7 +118,7 @@ class CollideSearch {
 
   // Where nothing is open: another pair of patches, or one that waits. False at the end.
   bool take_more(NearPairs& near) {
-    if (finished() || end_.came) return false;
+    if (finished() || end_.early) return false;
     if (NodePair next; near.usable() && near.next(next)) {
       open_pairs().add(next);
       return true;
@@ -138,7 +138,7 @@ class CollideSearch {
     if (may == PairWalk::May::open) return Verb::open;
     end_.incomplete = true;
     if (may == PairWalk::May::not_open) return Verb::drop;
-    end_.came = true;
+    end_.early = true;
     end_.budget_spent = stats_.splits >= max_splits();
     return Verb::stop;
   }
@@ -245,7 +245,7 @@ class CollideSearch {
   };
   struct End {
     bool incomplete = false;    // pairs were not opened, for the budget, or because they cannot be
-    bool came = false;          // for the budget, or the memory of a query
+    bool early = false;         // for the budget, or the memory of a query
     bool budget_spent = false;  // the former
   };
 

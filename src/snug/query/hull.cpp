@@ -250,7 +250,7 @@ class OneHull {
   }
 
  private:
-  // False.
+  // With a problem; returns false.
   bool blame_budget() {
     blame(HullFault::too_few_triangles, 0, mesh_.positions[mesh_.triangles[0][0]]);
     return false;
