@@ -47,10 +47,8 @@ std::size_t Queries::bytes() const {
 PointQueries::PointQueries(const LimitSurface& surface, const SurfaceBvhOptions& options)
     : model_(surface, one_thread(options)), scratch_(model_) {}
 
-ClosestPoint PointQueries::closest(const Point3& to, double precision) {
-  Precision options;
-  options.absolute = precision;
-  return closest_point(scratch_, to, options);
+ClosestPoint PointQueries::closest(const Point3& to, double precision, WitnessKind witness) {
+  return closest_point(scratch_, to, {.absolute = precision, .witness = witness});
 }
 
 void Work::add(const SearchStats& stats) {

@@ -38,7 +38,8 @@ class PointQueries {
   explicit PointQueries(const LimitSurface& surface, const SurfaceBvhOptions& options = {});
 
   /// With upper - lower at most `precision`.
-  [[nodiscard]] ClosestPoint closest(const Point3& to, double precision);
+  [[nodiscard]] ClosestPoint closest(const Point3& to, double precision,
+                                     WitnessKind witness = WitnessKind::exact);
 
  private:
   SurfaceBvh model_;
