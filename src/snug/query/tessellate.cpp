@@ -55,6 +55,28 @@ struct Tile {
   bool known = false, coarse = false, thick = false;
 };
 
+// The quadratics of pieces that have one, by number.
+class Quadratics {
+ public:
+  [[nodiscard]] PieceQuadratic& operator[](Index i) { return all_[i]; }
+  [[nodiscard]] const PieceQuadratic& operator[](Index i) const { return all_[i]; }
+  // Room for one.
+  [[nodiscard]] Index add() {
+    if (free_.empty()) {
+      all_.emplace_back();
+      return static_cast<Index>(all_.size() - 1);
+    }
+    const Index i = free_.back();
+    free_.pop_back();
+    return i;
+  }
+  void drop(Index i) { free_.push_back(i); }
+
+ private:
+  std::deque<PieceQuadratic> all_;
+  std::vector<Index> free_;
+};
+
 // A triangle of the mesh, on a piece.
 struct Facet {
   std::array<TriangleParameter, 3> at;
@@ -139,7 +161,6 @@ class MeshRefinement {
         options_(options),
         limits_(limits),
         run_(run),
-        back_(surface.scale().inverse()),
         complex_(surface),
         vertices_(complex_.vertex_count()) {}
 
@@ -186,6 +207,7 @@ class MeshRefinement {
     if (limits_.of_owner.empty()) return limits_.tolerance;
     return limits_.of_owner[surface_.place(PatchId(piece_of(t).patch)).owner];
   }
+  [[nodiscard]] PowerOfTwo back() const { return surface_.scale().inverse(); }
   [[nodiscard]] Point3 scaled(Index v) const { return surface_.scale().apply(vertices_[v].written); }
   void finish(Vertex& vertex, const BoundedPoint& point) const;
   void refuse_if_stuck() const;
@@ -195,13 +217,11 @@ class MeshRefinement {
   const TessellateOptions& options_;
   Limits limits_;
   Run run_;
-  PowerOfTwo back_;
   TriangleComplex complex_;
   std::vector<Vertex> vertices_;
   std::deque<Facet> facets_;  // without room to spare, which would be most of the memory
   std::vector<Tile> pieces_;
-  std::deque<PieceQuadratic> quadratics_;  // of pieces; others are free
-  std::vector<Index> free_quadratics_;
+  Quadratics quadratics_;
   std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
   bool errors_whole_ = false;  // also those above the tolerance
   std::atomic<bool> stuck_{false};
@@ -224,7 +244,7 @@ void MeshRefinement::place_roots() {
 
 // The number that is written, and its error.
 void MeshRefinement::finish(Vertex& vertex, const BoundedPoint& point) const {
-  Point3 written = back_.apply(point.position);
+  Point3 written = back().apply(point.position);
   if (options_.single_precision) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto rounded = static_cast<float>(written[a]);
@@ -403,7 +423,7 @@ void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
     Tile& piece = piece_of(t);
     if (!piece.coarse) continue;
     coarse_.push_back(t);
-    if (piece.quadratic != UINT32_MAX) free_quadratics_.push_back(std::exchange(piece.quadratic, UINT32_MAX));
+    if (piece.quadratic != UINT32_MAX) quadratics_.drop(std::exchange(piece.quadratic, UINT32_MAX));
   }
 }
 
@@ -411,14 +431,7 @@ void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
 void MeshRefinement::make_room_for_quadratics(const std::vector<Index>& triangles) {
   for (const Index t : triangles) {
     Tile& piece = piece_of(t);
-    if (piece.known || piece.quadratic != UINT32_MAX) continue;
-    if (free_quadratics_.empty()) {
-      piece.quadratic = static_cast<Index>(quadratics_.size());
-      quadratics_.emplace_back();
-    } else {
-      piece.quadratic = free_quadratics_.back();
-      free_quadratics_.pop_back();
-    }
+    if (!piece.known && piece.quadratic == UINT32_MAX) piece.quadratic = quadratics_.add();
   }
 }
 
@@ -580,7 +593,7 @@ void MeshRefinement::find_errors() {
 double MeshRefinement::error_bound() const {
   double largest = 0;
   for (const Facet& facet : facets_) largest = std::max(largest, facet.error);
-  return unscaled_up(largest, back_);
+  return unscaled_up(largest, back());
 }
 
 void MeshRefinement::refuse_if_stuck() const {
@@ -592,7 +605,7 @@ void MeshRefinement::refuse_if_stuck() const {
   char text[160];
   std::snprintf(
       text, sizeof text, "tessellate: rounding leaves more than the error on this mesh; take %.3g or more",
-      4 * unscaled_up(std::max(largest, std::min(limits_.tolerance, limits_.max_thickness)), back_));
+      4 * unscaled_up(std::max(largest, std::min(limits_.tolerance, limits_.max_thickness)), back()));
   refuse_value(text);
 }
 
@@ -633,7 +646,7 @@ Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
     const std::size_t place = begins[patch.value()]++;
     result.triangles[place] = corners[t];
     result.owners[place] = surface_.place(patch).owner;
-    if (errors != nullptr) (*errors)[place] = unscaled_up(facet.error, back_);
+    if (errors != nullptr) (*errors)[place] = unscaled_up(facet.error, back());
     if (!options_.corners) continue;
     for (std::size_t k = 0; k < 3; ++k) result.corners[place][k] = place_of(surface_, patch, facet.at[k]);
   }
@@ -658,7 +671,7 @@ Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
       v = number[v];
     }
   }
-  result.position_error = unscaled_up(position_error, back_);
+  result.position_error = unscaled_up(position_error, back());
   if (options_.normals) add_normals(result, order);
   return result;
 }
