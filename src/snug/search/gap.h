@@ -22,8 +22,8 @@ namespace snug {
   return (std::sqrt(length_sq(between) + 8 * underflow_error) + errors) * (1 + 16 * unit_roundoff);
 }
 
-/// Lower bound of the distance of two sets on either side of planes across a direction of length 1, up to 8 roundings. `taken`: an upper
-/// bound of how far the one reaches along it, less a lower bound of where the other one begins.
+/// Lower bound of the distance of two sets on either side of planes across a direction of length 1, up to 8 roundings. `taken`: an
+/// upper bound of how far the one reaches along it, less a lower bound of where the other one begins.
 [[nodiscard]] inline double gap_of_planes(double taken) { return -taken * (1 - 16 * unit_roundoff); }
 
 }  // namespace snug

@@ -27,8 +27,9 @@ class PairWalk {
     end,       ///< the budget is spent, or the query's memory full
   };
   [[nodiscard]] May may(const NodePair& pair, std::uint64_t budget) const;
-  /// Opens the larger node, of a tree or of pieces, so that no large one is compared with many small ones. Child pairs with a gap of at most `prune_distance` are added to `out`,
-  /// the one with the smallest gap last. Returns the smallest gap of the others; infinite if there are none.
+  /// Opens the larger node, of a tree or of pieces, so that no large one is compared with many small ones. Child pairs with a gap of
+  /// at most `prune_distance` are added to `out`, the one with the smallest gap last. Returns the smallest gap of the others;
+  /// infinite if there are none.
   /// Requires:  a node that can be opened.
   float open(const NodePair& pair, double prune_distance, Frontier<NodePair>& out);
 
