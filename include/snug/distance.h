@@ -41,7 +41,7 @@ struct Distance {
                                                       const DistanceOptions& options = {},
                                                       const Run& run = {});
 
-/// The limit point at `at`, which is set, or a point near it: close to the closest one, at most distance.upper away.
+/// The limit point at `at`, which is set, or a point near it. Both are at most distance.upper away, whatever the outcome.
 struct ClosestPoint : LimitPoint {
   Interval distance{};  ///< contains the exact distance
   Outcome outcome = Outcome::complete;

@@ -4,8 +4,10 @@
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_test --gtest_filter=closest.points_are_the_nearest
 
 #include <snug/distance.h>
+#include <snug/evaluate.h>
 
 #include <gtest/gtest.h>
+#include <oracle/hausdorff_twin.h>
 #include <oracle/test_meshes.h>
 #include <testing/contact_trials.h>
 #include <testing/surfaces.h>
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace snug::closest_test {
@@ -173,10 +176,12 @@ TEST(closest, of_points_some_sizes_away_is_as_narrow_as_asked) {
   }
 }
 
-// Plane quads that are no parallelograms: no part of one need be split for its set, but points lie elsewhere than in a triangle.
+// Plane quads that are no parallelograms, against their halves: no part of one need be split for its set, but points lie elsewhere
+// than in a triangle.
 TEST(closest, of_plane_quads_is_as_narrow_as_asked) {
   std::mt19937_64 random(5);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  constexpr double rounding = 1e-13;  // of corners that lie in one plane
   for (int quad = 0; quad < 40; ++quad) {
     const Point3 apex{unit() - 0.5, 1 + unit(), unit()};
     const double left = 0.1 + 0.8 * unit(), right = 0.1 + 0.8 * unit();
@@ -185,13 +190,28 @@ TEST(closest, of_plane_quads_is_as_narrow_as_asked) {
     mesh.points = {a, b, b + right * (apex - b), a + left * (apex - a)};
     mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
     const Surface surface(mesh, {.scheme = Scheme::bilinear});
+    const auto corner = [&](std::size_t v) {
+      return Point{mesh.points[v].x, mesh.points[v].y, mesh.points[v].z};
+    };
+    const std::vector<oracle::Corners> halves{{corner(0), corner(1), corner(2)},
+                                              {corner(0), corner(2), corner(3)}};
     for (int k = 0; k < 20; ++k) {
       const Point3 to{3 * unit() - 1.5, 3 * unit() - 1, k % 4 == 0 ? 0 : unit() - 0.5};
       for (const WitnessKind witness : {WitnessKind::exact, WitnessKind::approximate}) {
         for (const double absolute : {1e-1, 1e-2, 1e-4, 1e-6, 1e-9}) {
           const ClosestPoint found =
               closest_point(surface, to, {.absolute = absolute, .witness = witness}, {.max_splits = 2000});
-          EXPECT_EQ(found.outcome, Outcome::complete) << quad << ", " << k << ", " << absolute;
+          const std::string where =
+              std::to_string(quad) + ", " + std::to_string(k) + ", " + std::to_string(absolute);
+          EXPECT_EQ(found.outcome, Outcome::complete) << where;
+          EXPECT_LE(found.distance.upper - found.distance.lower, absolute) << where;
+          const oracle::HausdorffBounds truth = oracle::distance_to_triangles({to.x, to.y, to.z}, halves);
+          EXPECT_LE(found.distance.lower, static_cast<double>(truth.upper) + rounding) << where;
+          EXPECT_GE(found.distance.upper, static_cast<double>(truth.lower) - rounding) << where;
+          const Point3 there = evaluate(surface, *found.at).point;
+          EXPECT_LE(max_abs(there - found.point), found.error + rounding) << where;
+          EXPECT_LE(distance(there, to), found.distance.upper + rounding) << where;
+          EXPECT_LE(distance(found.point, to), found.distance.upper + rounding) << where;
         }
       }
     }

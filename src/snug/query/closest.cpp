@@ -137,8 +137,9 @@ class ClosestSearch {
       take(node, clamped(near.on_b));
     }
     // A plane between the point and the quadratic, across the direction of the closest point so far.
-    if (gap < bounds_.prune_distance())
+    if (gap < bounds_.prune_distance()) {
       gap = std::max(gap, plane_gap(node, closest_.point.position - to_.at));
+    }
     return gap;
   }
 
@@ -186,9 +187,11 @@ class ClosestSearch {
     };
     if (nearest_ && bounds_.upper() < closest_.distance) {
       // A limit point may be nearer than what is known of it.
-      const bool near = options_.witness != WitnessKind::exact && near_enough(in_mesh_units(), options_);
-      if (near) take_near(nearest_->node, nearest_->at);
-      if (!near) take(nearest_->node, nearest_->at);
+      if (options_.witness != WitnessKind::exact && near_enough(in_mesh_units(), options_)) {
+        take_near(nearest_->node, nearest_->at);
+      } else {
+        take(nearest_->node, nearest_->at);
+      }
     }
     const Interval distance = in_mesh_units();
     const BoundedPoint closest = unscaled(closest_.point, back);
