@@ -105,9 +105,8 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
   const bool is_large = best.triangles.size() > large;
   const std::span tried = std::span(shares).first(is_large ? shares_if_large : shares.size());
   const double near_enough = is_large ? near_share_if_large : near_share;
-  int done = -1;  // shares
-  for (const double share : tried) {
-    ++done;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const double share = tried[i];
     how.error = share * tolerance;
     Tessellation fine;
     try {
@@ -122,8 +121,9 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
     double low = min_share * tolerance, high = max_share * tolerance;
     if (share > 1 && !consider(fine)) high = low;
     while (high > near_enough * low) {
-      run.monitor->report((done + 1 - std::log(high / low) / std::log(max_share / min_share)) /
-                          static_cast<double>(tried.size()));
+      run.monitor->report(
+          (static_cast<double>(i + 1) - std::log(high / low) / std::log(max_share / min_share)) /
+          static_cast<double>(tried.size()));
       const double error = std::sqrt(low * high);
       (consider(part_of(fine, floats.simplified(error))) ? low : high) = error;
     }
