@@ -40,10 +40,15 @@ class Workers {
   /// Calls answer(state, i) for each i in [0, count), no two at once with the same state.
   /// Errors:    what `answer` throws ends the loop and is thrown again, of several one.
   void for_each(std::size_t count, const std::function<void(State&, std::size_t)>& answer) {
+    for_each_range(count, [&](State& state, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) answer(state, i);
+    });
+  }
+  /// The same for ranges, which depend on scheduling.
+  void for_each_range(std::size_t count,
+                      const std::function<void(State&, std::size_t, std::size_t)>& answer) {
     share(count, [&](SharedRanges& ranges, State& state) {
-      while (const auto range = ranges.next()) {
-        for (std::size_t i = range->begin; i < range->end; ++i) answer(state, i);
-      }
+      while (const auto range = ranges.next()) answer(state, range->begin, range->end);
     });
   }
   [[nodiscard]] std::size_t threads() const { return threads_; }

@@ -1,6 +1,8 @@
 #include <snug/query/ray.h>
 #include <snug/search/workspace.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -13,7 +15,6 @@
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
 #include <support/error.h>
-#include <support/parallel.h>
 #include <support/run.h>
 
 namespace snug {
@@ -49,33 +50,51 @@ class RaySearch {
     precision_ = surface.scale().apply(precision);
   }
 
-  [[nodiscard]] RayHits ask(PieceCache& workspace, const Ray& ray) const {
+  // Answers some rays, at most rays_at_once.
+  void ask(PieceCache& workspace, SurfaceEvaluator& evaluator, std::span<const Ray> rays,
+           std::span<RayHits> answers) const {
+    std::vector<RayTask> tasks;
+    tasks.reserve(rays.size());
+    for (const Ray& ray : rays) tasks.push_back(task_of(ray));
+    std::array<FoundHits, rays_at_once> found;
+    walk_rays(workspace, tasks, monitor_, std::span(found).first(rays.size()));
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      answers[i] = finished(found[i], tasks[i], rays[i], evaluator);
+  }
+
+ private:
+  [[nodiscard]] RayTask task_of(const Ray& ray) const {
     require_ray(ray);
-    const PowerOfTwo scale = surface_.scale();
-    const RayScale lengths(ray.direction, scale);
-    const Point3 origin = scale.apply(ray.origin);
+    const RayScale lengths(ray.direction, surface_.scale());
+    const Point3 origin = surface_.scale().apply(ray.origin);
     require_value(max_abs(origin - Point3{}) <= 0x1p40,
                   "ray: an origin is more than 10^12 sizes of the surface away; give one that is closer");
     const double from = lengths.to_scaled(ray.from), to = lengths.to_scaled(ray.to);
-    const RayTask task{RayFrame(origin, normalized(ray.direction)),
-                       {ray.from == 0 ? 0 : lowered(from), raised(to)},
-                       {ray.from == 0 ? 0 : raised(from), lowered(to)},
-                       options_.query,
-                       precision_,
-                       max_splits_};
-    const FoundHits found = walk_ray(workspace, task, monitor_);
+    return {origin,
+            lengths.unit(ray.direction),
+            {ray.from == 0 ? 0 : lowered(from), raised(to)},
+            {ray.from == 0 ? 0 : raised(from), lowered(to)},
+            options_.query,
+            precision_,
+            max_splits_};
+  }
+
+  [[nodiscard]] RayHits finished(const FoundHits& found, const RayTask& task, const Ray& ray,
+                                 SurfaceEvaluator& evaluator) const {
     RayHits answer;
     bool narrow = true;
     for (const FoundHit& hit : found.hits) narrow = narrow && (hit.reached || !hit.certified);
     answer.outcome =
         outcome_of(found.complete && (narrow || options_.query == RayQuery::any), !found.complete);
+    if (found.hits.empty()) return answer;
+    const RayScale lengths(ray.direction, surface_.scale());
     answer.hits.reserve(found.hits.size());
-    for (const FoundHit& hit : found.hits) answer.hits.push_back(finished(hit, task.ray, lengths));
+    for (const FoundHit& hit : found.hits) answer.hits.push_back(finished(hit, task, lengths, evaluator));
     return answer;
   }
 
- private:
-  [[nodiscard]] RayHit finished(const FoundHit& found, const RayFrame& ray, const RayScale& lengths) const {
+  [[nodiscard]] RayHit finished(const FoundHit& found, const RayTask& ray, const RayScale& lengths,
+                                SurfaceEvaluator& evaluator) const {
     RayHit hit;
     hit.t = {require_representable(lowered(lengths.to_parameter(found.along.lower))),
              require_representable(raised(lengths.to_parameter(found.along.upper)))};
@@ -88,7 +107,7 @@ class RaySearch {
     hit.point = require_representable(point.position);
     hit.error = require_representable(point.error);
     hit.at = place_of(surface_, found.piece, found.at);
-    hit.normal = evaluate(surface_, *hit.at).normal;
+    hit.normal = evaluator(*hit.at).normal;
     return hit;
   }
 
@@ -103,23 +122,30 @@ class RaySearch {
 
 RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
   PieceCache& workspace = workspace_of(run).pieces().of(surface);
-  const RayHits answer = RaySearch(workspace.model().surface(), options, run).ask(workspace, ray);
+  SurfaceEvaluator evaluator(workspace.model().surface());
+  RayHits answer;
+  RaySearch(workspace.model().surface(), options, run).ask(workspace, evaluator, {&ray, 1}, {&answer, 1});
   certify(run, surface, {&ray, 1}, options.query, {&answer, 1});
   return answer;
 }
 
 std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
                          const Run& run) {
-  const SurfaceBvh& model = surface.data()->bvh();
-  const RaySearch search(model.surface(), options, run);
+  const LimitSurface& limit = surface.data()->bvh().surface();
+  const RaySearch search(limit, options, run);
   std::vector<RayHits> answers(rays.size());
+  // Groups begin with the same rays however many threads there are.
+  const std::size_t groups = (rays.size() + rays_at_once - 1) / rays_at_once;
   std::atomic<std::size_t> done{0};
-  parallel_for_with(
-      rays.size(), run.threads, [&] { return PieceCache(model); },
-      [&](PieceCache& workspace, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) answers[i] = search.ask(workspace, rays[i]);
-        monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
-      });
+  workers_of(run).for_each_range(groups, [&](Workspace& state, std::size_t begin, std::size_t end) {
+    PieceCache& workspace = state.pieces().of(surface);
+    SurfaceEvaluator evaluator(limit);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t first = i * rays_at_once, count = std::min(rays_at_once, rays.size() - first);
+      search.ask(workspace, evaluator, rays.subspan(first, count), std::span(answers).subspan(first, count));
+    }
+    monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(groups));
+  });
   certify(run, surface, rays, options.query, answers);
   return answers;
 }

@@ -52,7 +52,9 @@ void PieceCache::Known::forget() {
   offsets.forget();
 }
 
-std::size_t PieceCache::bytes() const { return known_.bytes() + open_nodes_.bytes() + open_pairs_.bytes(); }
+std::size_t PieceCache::bytes() const {
+  return known_.bytes() + open_nodes_.bytes() + open_pairs_.bytes() + open_rays_.bytes();
+}
 
 void PieceCache::begin(std::size_t max_bytes) {
   touched_ = 0;
@@ -60,6 +62,7 @@ void PieceCache::begin(std::size_t max_bytes) {
     known_ = {};
     open_nodes_ = {};
     open_pairs_ = {};
+    open_rays_ = {};
     query_ = 1;
   }
 }

@@ -31,6 +31,14 @@ struct NodeGap {
   float gap;
 };
 
+/// A node, and which of some rays may meet it, a bit each.
+struct NodeRays {
+  Node node;
+  float gap;  ///< the least of `begins`
+  std::uint32_t rays;
+  std::array<float, 8> begins;  ///< lower bounds of where, as distances along each
+};
+
 /// Two nodes, of A and of B.
 struct NodePair {
   std::array<Node, 2> nodes;
@@ -107,6 +115,11 @@ class PieceCache {
     if (node.kind == Node::Kind::tree) return true;
     return node.boxes->names[node.place] != 0;
   }
+  /// Also true for pieces above the last level that are as flat as doubles can resolve: their bounds are in single precision,
+  /// relative to their size.
+  [[nodiscard]] bool can_open_further(const Node& node) {
+    return can_open(node) || patch(node).path.level() < PiecePath::max_level;
+  }
 
   /// Children of a node, made if need be.
   struct Opened {
@@ -126,6 +139,8 @@ class PieceCache {
   /// For a query that goes down one tree, and for one about a pair, of which this is A.
   [[nodiscard]] Frontier<NodeGap>& open_nodes() { return open_nodes_; }
   [[nodiscard]] Frontier<NodePair>& open_pairs() { return open_pairs_; }
+  /// For one about some rays at once.
+  [[nodiscard]] Frontier<NodeRays>& open_rays() { return open_rays_; }
 
   /// Has this query reached the limit of distinct splits?
   [[nodiscard]] bool full() const { return touched_ >= max_pieces_; }
@@ -218,6 +233,7 @@ class PieceCache {
   KnownExtents extents_;
   Frontier<NodeGap> open_nodes_;
   Frontier<NodePair> open_pairs_;
+  Frontier<NodeRays> open_rays_;
   std::uint32_t query_ = 0;
   std::size_t touched_ = 0;  // by this query
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -32,6 +33,11 @@ class PieceBounds {
   [[nodiscard]] std::array<Vector3, 2> derivatives(TriangleParameter at) const;
   /// Its Bezier points, relative to the origin: corners, then middles of the edges 01, 12, 20.
   [[nodiscard]] Vector3 bezier_point(std::size_t k) const { return wide(net_[k]); }
+  /// The same points in single precision, three coordinates each; and at least the sum of the sizes of a point's.
+  [[nodiscard]] const float* net() const { return net_[0].data(); }
+  [[nodiscard]] float reach() const {
+    return std::fabs(net_[0][0]) + std::fabs(net_[0][1]) + std::fabs(net_[0][2]) + spread_;
+  }
   /// Upper bound of dot(w, x) over the quadratic, x relative to the origin, up to roundings that both errors cover.
   [[nodiscard]] double extent(const Vector3& w) const;
   [[nodiscard]] double error() const { return static_cast<double>(error_); }

@@ -54,8 +54,8 @@ TriangleParameter clamped(double u, double v) {
 
 // Is the hull of points farther than `reach` from the line through `place`, on the side that w shows?
 bool beyond(std::span<const Vector3> points, const Offset2& place, const Offset2& w, double reach) {
-  const double size = std::hypot(w.x, w.y);
-  if (!(size > 0)) return false;
+  const double size = std::sqrt(w.x * w.x + w.y * w.y);
+  if (!(size > 0x1p-400)) return false;  // squares underflow
   const double least = reach * size * ray_slack;
   double largest = 0;
   for (const Vector3& p : points) {
@@ -223,7 +223,7 @@ double SeenPiece::width() const {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3 &p = net_[k], &q = net_[(k + 1) % 3];
     const Offset2 side{q.x - p.x, q.y - p.y};
-    const double size = std::hypot(side.x, side.y);
+    const double size = std::sqrt(side.x * side.x + side.y * side.y);
     double lower = 0, upper = 0;
     for (const Vector3& r : net_) {
       const Offset2 from{r.x - p.x, r.y - p.y};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/search/precision.h>
+#include <snug/search/ray_group.h>
 #include <snug/surface/patch_sides.h>
 
 namespace snug {
@@ -16,13 +18,13 @@ namespace {
 
 using CrossingState = LinePieceCrossing::State;
 
-// Splits after which a ray that meets no border should have been decided.
-constexpr std::uint64_t quick_splits = 256;
-// Share of a tube's radius that pieces in it may be off by. Tubes that are tried later are narrower, or their
-// pieces smaller even for them: around a vertex of many needles there is little room between their edges.
-constexpr double first_share = 0x1p-5, smaller_share = 0x1p-4;
+// Tubes that are tried later are narrower, or their pieces smaller even for them: around a vertex of many needles there is little
+// room between their edges.
+constexpr double smaller_share = 0x1p-4;
 constexpr double narrowing = 0x1p-10;
 constexpr unsigned tubes = 3;
+// Rays of one group are at most so far from its first one, as a share of the surface's radius.
+constexpr double widest_group = 0x1p-5;
 
 // Lines beside the ray that are tried, on a spiral across the tube.
 constexpr unsigned trials = 160;
@@ -53,31 +55,6 @@ struct Leaf {
   Node node;
 };
 
-// The part of a ray that comes near a surface.
-struct NearPart {
-  NearPart(const RayTask& task, const Ball& ball) {
-    const Vector3 from = ball.centre - task.ray.origin;
-    const double middle = dot(task.ray.along, from);
-    far = max_abs(from);
-    const double reach = 1.001 * ball.radius + 0x1p-40 * (1 + far);
-    lower = std::max(task.outer.lower, middle - reach);
-    upper = std::min(task.outer.upper, middle + reach);
-    if (!bounded() || empty()) return;
-    const double half = (upper - lower) / 2, centre = lower + half;
-    segment.centre = task.ray.origin + centre * task.ray.along;
-    segment.box.half[0] = float_up(half * (1 + 0x1p-20));
-    for (std::size_t k = 0; k < 3; ++k) segment.box.axes[0][k] = static_cast<float>(task.ray.along[k]);
-    rounding = 0x1p-48 * (1 + far);
-  }
-  [[nodiscard]] bool bounded() const { return std::isfinite(lower) && std::isfinite(upper); }
-  [[nodiscard]] bool empty() const { return upper < lower; }
-
-  double far;           // how far the surface's middle is from the ray's origin, a coordinate
-  double lower, upper;  // along the ray
-  PlacedBox segment{};
-  double rounding = 0;  // of distances from it
-};
-
 // The sides of a patch beyond which there is no other, or more than one: a bit each.
 unsigned open_sides(const LimitSurface& surface, PatchId root) {
   const Topology& topology = surface.topology();
@@ -102,22 +79,29 @@ unsigned open_sides(const LimitSurface& surface, PatchId root) {
   return open;
 }
 
-class RayWalk {
+// A ray that no pieces decide each by itself.
+class TubeWalk {
  public:
-  RayWalk(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor)
-      : cache_(cache), task_(task), monitor_(monitor), near_(task, cache.model().tree().ball()) {}
+  TubeWalk(PieceCache& cache, const GroupedRay& ray, const WorkMonitor& monitor)
+      : cache_(cache),
+        task_(*ray.task),
+        monitor_(monitor),
+        near_(ray.near),
+        ray_(task_.origin, task_.along),
+        splits_(ray.splits) {
+    for (std::size_t k = 0; k < 3; ++k) segment_.direction[k][0] = static_cast<float>(task_.along[k]);
+    segment_.half[0] = float_up(near_.half * (1 + 0x1p-20));
+  }
 
   FoundHits run() {
     cache_.begin();
-    if (!near_.bounded() || near_.empty()) return {{}, near_.bounded()};
-    if (quick()) return std::move(found_);
     FoundHits best;
     best.complete = false;
     double reach = std::clamp(task_.precision / 8, 0x1p-34, 0x1p-10);
     // Roundings alone are off by more than 2^-46 of that.
     const double least = 0x1p-40 * (1 + near_.far);
     reach = std::max(reach, least);
-    double share = first_share;
+    double share = tube_share;
     bool resolved = false;
     for (unsigned i = 0; i < tubes + (resolved ? 2 : 0); ++i) {
       const bool certain = search_tube(reach, std::max(share * reach, 0x1p-4 * least));
@@ -150,42 +134,27 @@ class RayWalk {
 
   // Adds what a node opens to, none of it before the node's own begin, unless it is farther than `reach` from the
   // line or behind `end`.
-  void open(const NodeGap& at, double reach, double end) {
+  void open(const NodeGap& at, double reach, float end) {
     const PieceCache::Opened opened = cache_.open(at.node);
-    WideNode::Distances gaps, ahead;
-    opened.boxes->distances(near_.segment, near_.rounding, 0, gaps);
-    opened.boxes->extents(-task_.ray.along, ahead);
-    const double from = dot(task_.ray.along, opened.boxes->origin() - task_.ray.origin);
-    for (std::size_t i = 0; i < opened.count(); ++i) {
-      if (static_cast<double>(gaps[i]) > reach) continue;
-      const double begin = from - static_cast<double>(ahead[i]) - reach - near_.rounding;
-      if (begin > end) continue;
-      // Rounded down, whatever its sign.
-      const auto lower = static_cast<float>(begin - 0x1p-22 * std::fabs(begin));
-      open_.add({opened.child(i), std::max(at.gap, lower)});
+    const Vector3 from = near_.middle - opened.boxes->origin();
+    for (std::size_t k = 0; k < 3; ++k) segment_.middle[k][0] = static_cast<float>(from[k]);
+    segment_.slack[0] = float_up(reach + near_.rounding + 0x1p-118);
+    std::array<float, kernels::node_width> begins;
+    std::uint32_t met = kernels::boxes_met(*opened.boxes, segment_, 0, begins);
+    for (; met != 0; met &= met - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(met));
+      const float begin = std::max(at.gap, begins[i]);
+      if (begin <= end) open_.add({opened.child(i), begin});
     }
   }
 
   [[nodiscard]] bool outside(const Extent& along, double end) const {
     return along.lower > end || along.upper < task_.outer.lower;
   }
-  [[nodiscard]] bool within(const Extent& along) const {
-    return along.lower >= task_.inner.lower && along.upper <= task_.inner.upper;
-  }
-
-  // Also pieces that are as flat as doubles can resolve: their bounds are in single precision, relative to their
-  // size.
-  [[nodiscard]] bool can_open(const Node& node) {
-    return PieceCache::can_open(node) || cache_.patch(node).path.level() < PiecePath::max_level;
-  }
-
   [[nodiscard]] SeenPiece seen(const Node& node) const {
-    return {task_.ray, PieceCache::bounds_of(node), node.boxes->origin()};
+    return {ray_, PieceCache::bounds_of(node), node.boxes->origin()};
   }
 
-  [[nodiscard]] bool is_located(const Extent& along) const {
-    return along.upper - along.lower <= task_.precision;
-  }
   [[nodiscard]] double widest_hit() const {
     double widest = 0;
     for (const FoundHit& hit : found_.hits) widest = std::max(widest, hit.along.upper - hit.along.lower);
@@ -193,111 +162,40 @@ class RayWalk {
   }
 
   void add_hit(const Node& node, const Extent& along, bool certified, int side, TriangleParameter at) {
-    found_.hits.push_back({along, certified, is_located(along), side, cache_.name(node), at});
-  }
-
-  // Hits that pieces prove each by itself.
-  struct Quick {
-    RayWalk& walk;
-    double end;          // nothing behind it matters
-    bool enough = true;  // Are they?
-
-    Verb look_at(const NodeGap& at) {
-      const auto& [node, begin] = at;
-      if (static_cast<double>(begin) > end) return Verb::stop;
-      if (!node.bounded()) return Verb::open;
-      const RayTask& task = walk.task_;
-      walk.monitor_.checkpoint();
-      const SeenPiece piece = walk.seen(node);
-      const LinePieceCrossing crossing = piece.crossing({}, 0, task.precision);
-      if (crossing.state == CrossingState::none || walk.outside(crossing.along, end)) return Verb::drop;
-      const bool hit = crossing.state == CrossingState::one && walk.within(crossing.along);
-      if (hit) {
-        const bool narrow = walk.is_located(crossing.along);
-        if (narrow || task.query == RayQuery::any) {
-          walk.add_hit(node, crossing.along, true, crossing.side, crossing.at);
-        }
-        if (task.query == RayQuery::any) return Verb::stop;
-        if (task.query == RayQuery::nearest) end = std::min(end, crossing.along.upper);
-        if (narrow) return Verb::drop;
-      }
-      const double off = crossing.limited_by_errors ? piece.error() : piece.width();
-      const bool small = !hit && off <= first_share / 8 * task.precision;
-      enough = !small && walk.can_open(node) && walk.splits_ < std::min(quick_splits, task.budget);
-      if (!enough) return Verb::stop;
-      ++walk.splits_;
-      return Verb::open;
-    }
-    void open(const NodeGap& at) { walk.open(at, 0, end); }
-  };
-
-  // False where these are not enough.
-  bool quick() {
-    start();
-    Quick question{*this, near_.upper};
-    search(open_, question);
-    if (!question.enough) return false;
-    if (task_.query == RayQuery::any) return true;
-    if (task_.query == RayQuery::nearest) keep_nearest(question.end);
-    sort_hits();
-    return true;
-  }
-
-  // Of hits that may all be the nearest one, leaves that which ends first, at `end`.
-  void keep_nearest(double end) {
-    auto& hits = found_.hits;
-    if (hits.empty()) return;
-    double begin = INFINITY;
-    for (const FoundHit& hit : hits) {
-      if (hit.along.lower <= end) begin = std::min(begin, hit.along.lower);
-    }
-    const auto first = std::min_element(hits.begin(), hits.end(), [](const FoundHit& x, const FoundHit& y) {
-      return x.along.upper < y.along.upper;
-    });
-    FoundHit nearest = *first;
-    nearest.along.lower = begin;
-    nearest.reached = is_located(nearest.along);
-    for (const FoundHit& hit : hits) {
-      if (hit.along.lower <= end && hit.side != nearest.side) nearest.side = 0;
-    }
-    hits.assign(1, nearest);
-  }
-
-  void sort_hits() {
-    std::sort(found_.hits.begin(), found_.hits.end(),
-              [](const FoundHit& x, const FoundHit& y) { return x.along.lower < y.along.lower; });
+    found_.hits.push_back({along, certified, task_.is_located(along), side, cache_.name(node), at});
   }
 
   // All pieces within `reach` of the line, known up to `fine` or thinner, in groups that are apart along it.
   struct Tube {
-    RayWalk& walk;
+    TubeWalk& walk;
     double reach, fine;
     std::vector<Leaf> leaves{};  // of groups that are not yet resolved
     double end_of_group = -INFINITY;
     bool resolved = true, done = false;  // Is each group crossed for certain? Is that enough?
 
     Verb look_at(const NodeGap& at) {
-      const auto& [node, begin] = at;
+      const Node& node = at.node;
+      const double begin = walk.near_.centre + static_cast<double>(at.gap) - walk.near_.rounding;
       // What comes first begins behind all of the group.
-      if (!leaves.empty() && static_cast<double>(begin) > end_of_group) {
+      if (!leaves.empty() && begin > end_of_group) {
         resolve_leaves();
         if (done) return Verb::stop;
       }
-      if (static_cast<double>(begin) > walk.near_.upper + reach) return Verb::stop;
+      if (begin > walk.near_.upper + reach) return Verb::stop;
       if (!node.bounded()) return Verb::open;
       walk.monitor_.checkpoint();
       const SeenPiece piece = walk.seen(node);
       LinePieceCrossing near = piece.crossing({}, reach);
       if (near.state == CrossingState::none) return Verb::drop;
       // Its boxes begin there, so that groups follow one another.
-      near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
+      near.along.lower = std::max(near.along.lower, begin);
       if (near.along.upper < near.along.lower || walk.outside(near.along, walk.near_.upper + reach)) {
         return Verb::drop;
       }
       const double off = near.limited_by_errors ? piece.error() : piece.width() + 2 * piece.error();
       const bool out_of_budget = walk.splits_ >= walk.task_.budget || walk.cache_.full();
       if (out_of_budget) walk.found_.complete = false;
-      if (out_of_budget || off <= fine || !walk.can_open(node)) {
+      if (out_of_budget || off <= fine || !walk.cache_.can_open_further(node)) {
         leaves.push_back({piece, piece.crossing({}, 0), near.along, node});
         end_of_group = std::max(end_of_group, near.along.upper);
         return out_of_budget ? Verb::stop : Verb::drop;
@@ -305,7 +203,7 @@ class RayWalk {
       ++walk.splits_;
       return Verb::open;
     }
-    void open(const NodeGap& at) { walk.open(at, reach, walk.near_.upper + reach); }
+    void open(const NodeGap& at) { walk.open(at, reach, walk.near_.from_middle(walk.near_.upper + reach)); }
 
     void resolve_leaves() {
       std::sort(leaves.begin(), leaves.end(),
@@ -326,7 +224,7 @@ class RayWalk {
     void resolve_group(std::span<const Leaf> group, const Extent& along) {
       if (walk.outside(along, walk.task_.outer.upper)) return;
       const bool whole =
-          walk.found_.complete && walk.within(along) &&
+          walk.found_.complete && walk.task_.within(along) &&
           std::none_of(group.begin(), group.end(), [&](const Leaf& leaf) { return near_open_side(leaf); });
       const Leaf* at = &group.front();
       TriangleParameter place = at->crossing.at;
@@ -394,7 +292,7 @@ class RayWalk {
     search(open_, question);
     if (!question.done) question.resolve_leaves();
     if (task_.query == RayQuery::any) keep_certified();
-    sort_hits();
+    found_.sort();
     return question.resolved;
   }
 
@@ -408,16 +306,44 @@ class RayWalk {
   PieceCache& cache_;
   const RayTask& task_;
   const WorkMonitor& monitor_;
-  NearPart near_;
+  const NearPart near_;
+  const RayFrame ray_;
+  kernels::SeenSegments segment_{};  // in lane 0
   Frontier<NodeGap>& open_ = cache_.open_nodes();
   FoundHits found_;
-  std::uint64_t splits_ = 0;
+  std::uint64_t splits_;
 };
 
 }  // namespace
 
-FoundHits walk_ray(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor) {
-  return RayWalk(cache, task, monitor).run();
+void walk_rays(PieceCache& cache, std::span<const RayTask> tasks, const WorkMonitor& monitor,
+               std::span<FoundHits> found) {
+  const Ball& ball = cache.model().tree().ball();
+  std::vector<GroupedRay> rays;
+  rays.reserve(tasks.size());
+  std::array<std::size_t, rays_at_once> numbers;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const NearPart near(tasks[i], ball);
+    found[i] = {};
+    if (!near.bounded() || near.empty()) {
+      found[i].complete = near.bounded();
+      continue;
+    }
+    numbers[rays.size()] = i;
+    rays.push_back({&tasks[i], near});
+  }
+  for (std::size_t begin = 0, end; begin < rays.size(); begin = end) {
+    for (end = begin + 1; end < rays.size() && lie_close(rays[begin], rays[end], widest_group * ball.radius);
+         ++end) {
+    }
+    const std::span<GroupedRay> group = std::span(rays).subspan(begin, end - begin);
+    cache.begin();
+    RayGroup(cache, group, monitor).run();
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    found[numbers[i]] =
+        rays[i].decided() ? std::move(rays[i].found) : TubeWalk(cache, rays[i], monitor).run();
+  }
 }
 
 }  // namespace snug

@@ -1,44 +1,24 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <span>
 
-#include <snug/ray.h>
+#include <snug/bvh/ray_kernel.h>
 #include <snug/search/piece_cache.h>
-#include <snug/search/ray_crossing.h>
+#include <snug/search/ray_task.h>
 
 namespace snug {
 
-/// A ray in scaled units; lengths along it are from its frame's origin.
-struct RayTask {
-  RayFrame ray;
-  Extent outer,
-      inner;  ///< the part that counts: all of `inner`, nothing beyond `outer`; they differ by roundings
-  RayQuery query = RayQuery::nearest;
-  double precision = 0;
-  std::uint64_t budget = 0;
-};
-
-/// RayHit in scaled units, at a parameter of a piece.
-struct FoundHit {
-  Extent along;
-  bool certified = false, reached = false;
-  int side = 0;
-  PieceName piece;
-  TriangleParameter at;
-};
-struct FoundHits {
-  std::vector<FoundHit> hits;
-  bool complete = true;
-};
-
-/// The hits of a ray: ray() of ray.h.
+/// Rays that are asked for at once, of which those that lie close together go down the tree as one.
+inline constexpr std::size_t rays_at_once = kernels::ray_width;
+/// The hits of one ray or more: ray() of ray.h.
 ///
 /// Pieces that the line misses are dropped, others split, the nearest first. A piece that its line certainly
 /// crosses is a hit by itself. Where a line comes too near to the border of a piece, all pieces near the line are
 /// collected, and crossings are counted along another line beside it, where that can be done.
 ///
 /// Source:    derivations/rays.md.
-[[nodiscard]] FoundHits walk_ray(PieceCache& cache, const RayTask& task, const WorkMonitor& monitor);
+/// Requires:  at most rays_at_once of them, and as many answers.
+void walk_rays(PieceCache& cache, std::span<const RayTask> tasks, const WorkMonitor& monitor,
+               std::span<FoundHits> found);
 
 }  // namespace snug
