@@ -34,6 +34,7 @@ struct Segments {
         result.middle[k][i] = static_cast<float>(from[k]);
         result.direction[k][i] = static_cast<float>(along[i][k]);
       }
+      result.origin[i] = static_cast<float>(-dot(along[i], from));
       result.half[i] = float_up(half[i] * (1 + 0x1p-20));
       result.slack[i] = float_up(slack[i] + 0x1p-118);
     }

@@ -19,7 +19,7 @@ constexpr float roundings = 64 * 0x1p-24F;
 // A segment, or one a lane.
 struct Segment {
   Vec3<V> middle, direction;
-  V half, slack;
+  V half, origin, slack;
 };
 
 // Are they met? Writes where, if so, at the earliest. `row`: of the boxes, or of one.
@@ -52,7 +52,11 @@ HWY_INLINE std::uint32_t met(const Row& row, V box_reach, const Segment& segment
   }
   const V along = dot(delta, segment.direction);
   gap = hn::Max(gap, hn::Sub(hn::Abs(along), hn::Add(segment.half, ahead)));
-  hn::StoreU(hn::Sub(hn::Sub(along, ahead), doubt), d, begin);
+  // From the node's origin, which is known in double precision: the node may be small.
+  const V own = dot(Vec3<V>{row(0), row(1), row(2)}, segment.direction);
+  const V unsure = hn::Add(hn::Add(hn::Mul(hn::Set(d, roundings), box_reach), segment.slack),
+                           hn::Mul(hn::Set(d, 0x1p-21F), hn::Abs(segment.origin)));
+  hn::StoreU(hn::Add(segment.origin, hn::Sub(hn::Sub(own, ahead), unsure)), d, begin);
   return bits(d, hn::Not(hn::Gt(gap, doubt)));
 }
 
@@ -62,6 +66,7 @@ std::uint32_t boxes(const NodeBoxes& node, const SeenSegments& segments, std::si
   const Segment segment{{one(segments.middle[0]), one(segments.middle[1]), one(segments.middle[2])},
                         {one(segments.direction[0]), one(segments.direction[1]), one(segments.direction[2])},
                         one(segments.half),
+                        one(segments.origin),
                         one(segments.slack)};
   std::uint32_t result = 0;
   for (std::size_t at = 0; at < node_width; at += hn::Lanes(d)) {
@@ -82,6 +87,7 @@ std::uint32_t rays(const NodeBoxes& node, std::size_t place, const SeenSegments&
         {some(segments.middle[0]), some(segments.middle[1]), some(segments.middle[2])},
         {some(segments.direction[0]), some(segments.direction[1]), some(segments.direction[2])},
         some(segments.half),
+        some(segments.origin),
         some(segments.slack)};
     result |= met(row, hn::Set(d, node.reach), segment, begin + at) << at;
   }

@@ -18,7 +18,8 @@ struct alignas(32) SeenSegments {
   std::array<std::array<float, ray_width>, 3> middle;     ///< relative to the node's origin
   std::array<std::array<float, ray_width>, 3> direction;  ///< of length 1, up to some roundings
   std::array<float, ray_width> half;                      ///< of their lengths
-  std::array<float, ray_width> slack;  ///< boxes this near are met, besides what roundings do
+  std::array<float, ray_width> origin;  ///< the node's, along the segment from its middle; rounded once
+  std::array<float, ray_width> slack;   ///< boxes this near are met, besides what roundings do
 };
 
 /// The boxes of a node that one of the segments may meet, a bit each, and lower bounds of where, from its middle.

@@ -12,6 +12,9 @@ namespace {
 using CrossingState = LinePieceCrossing::State;
 using kernels::ray_width;
 
+// More than what single precision leaves open of places across a ray.
+constexpr double single_doubt = 0x1p-14;
+
 // How far the ends of a ray's part are from those of another, the larger distance.
 double apart(const NearPart& a, const Vector3& along_a, const NearPart& b, const Vector3& along_b) {
   const Vector3 middles = b.middle - a.middle, halves = b.half * along_b - a.half * along_a;
@@ -52,7 +55,7 @@ NearPart::NearPart(const RayTask& task, const Ball& ball) {
   lower = std::max(task.outer.lower, ahead - reach);
   upper = std::min(task.outer.upper, ahead + reach);
   // Past the ball.
-  if (length(from - ahead * task.along) > reach) upper = -INFINITY, lower = 0;
+  if (length(from - ahead * task.along) > reach) lower = 0, upper = -1;
   if (!bounded() || empty()) return;
   half = (upper - lower) / 2;
   centre = lower + half;
@@ -117,7 +120,7 @@ Verb RayGroup::look_at(const NodeRays& at) {
       kernels::segments_meeting({record.net(), float_up(record.error()), record.reach()}, segments_);
   left_ &= seen.near;
   const RayTask& task = *rays_.front().task;
-  const double small_error = tube_share / 8 * task.precision,
+  const double small_error = std::max(tube_share / 8 * task.precision, single_doubt),
                largest_error = task.query == RayQuery::any ? INFINITY : task.precision / 2;
   for (std::uint32_t rest = left_; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
@@ -174,6 +177,7 @@ void RayGroup::place(const Point3& origin) {
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const Vector3 from = rays_[i].near.middle - origin;
     for (std::size_t k = 0; k < 3; ++k) segments_.middle[k][i] = static_cast<float>(from[k]);
+    segments_.origin[i] = static_cast<float>(-dot(rays_[i].task->along, from));
   }
 }
 

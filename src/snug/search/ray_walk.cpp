@@ -138,6 +138,7 @@ class TubeWalk {
     const PieceCache::Opened opened = cache_.open(at.node);
     const Vector3 from = near_.middle - opened.boxes->origin();
     for (std::size_t k = 0; k < 3; ++k) segment_.middle[k][0] = static_cast<float>(from[k]);
+    segment_.origin[0] = static_cast<float>(-dot(task_.along, from));
     segment_.slack[0] = float_up(reach + near_.rounding + 0x1p-118);
     std::array<float, kernels::node_width> begins;
     std::uint32_t met = kernels::boxes_met(*opened.boxes, segment_, 0, begins);
