@@ -1,11 +1,15 @@
 #include <snug/search/self_contact.h>
 
 #include <gtest/gtest.h>
+#include <oracle/hull_twin.h>
 #include <oracle/test_meshes.h>
 #include <testing/patches.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <random>
+#include <set>
 #include <vector>
 
 namespace snug::self_contact_test {
@@ -70,6 +74,53 @@ TEST(self_contact, finds_a_vertex_that_goes_through) {
     mesh.points[v] = mesh.points[other[trial % 3]];
     EXPECT_GT(mesh.contacts(), 0u) << trial;
   }
+}
+
+// Narrow triangles around a vertex, in two or three rings, some of whose vertices went past their neighbours or through farther ones:
+// whatever touches in exact arithmetic is found, and little else.
+TEST(self_contact, finds_what_touches_around_a_pole) {
+  std::mt19937_64 random(11);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  std::size_t touching = 0, reported = 0;
+  for (int trial = 0; trial < 120; ++trial) {
+    const auto n = static_cast<std::uint32_t>(12 + random() % 90);
+    const std::uint32_t rings = 2 + trial % 2;
+    Mesh mesh;
+    mesh.points.push_back({0, 0, 0.1});
+    for (std::uint32_t r = 1; r <= rings; ++r) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        // By up to a part of a step round, or, one in ten, by several.
+        const double by =
+            (trial % 4 == 0 ? 0 : 0.6 * (unit() - 0.5)) + (unit() < 0.02 ? 6 * (unit() - 0.5) : 0.0);
+        const double a = 2 * std::numbers::pi * (i + by) / n, radius = 0.3 * r * r / (rings * rings);
+        mesh.points.push_back(
+            {radius * std::cos(a), radius * std::sin(a), 0.1 - radius * radius + 0.01 * unit()});
+        const std::uint32_t j = (i + 1) % n, own = 1 + (r - 1) * n;
+        if (r == 1) {
+          mesh.triangles.push_back({0, own + i, own + j});
+          continue;
+        }
+        mesh.triangles.push_back({own - n + i, own + i, own + j});
+        mesh.triangles.push_back({own - n + i, own + j, own - n + j});
+      }
+    }
+    std::vector<oracle::Point> points;
+    for (const Point3& p : mesh.points) points.push_back({p.x, p.y, p.z});
+    const auto exact = oracle::HullTwin(points, mesh.triangles).contacts();
+    const auto found = self_contacts(mesh.points, mesh.triangles, 1'000'000, 1);
+    const std::set<std::pair<std::uint32_t, std::uint32_t>> known(found.begin(), found.end());
+    std::vector<int> of_first(mesh.triangles.size());
+    for (const auto& [a, b] : found) ++of_first[a];
+    for (const auto& [a, b] : exact) {
+      if (of_first[a] >= 16) continue;
+      EXPECT_TRUE(known.contains({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)}))
+          << trial << ": " << a << ' ' << b;
+    }
+    touching += exact.size();
+    reported += found.size();
+  }
+  EXPECT_GT(touching, 500u);
+  EXPECT_LE(reported, touching + touching / 100);
 }
 
 TEST(self_contact, of_neighbours) {

@@ -109,6 +109,45 @@ TaggedMesh bipyramid(std::uint32_t n) {
   return mesh;
 }
 
+// A fan of triangles around one vertex, its rim raised and lowered.
+TaggedMesh fan(std::uint32_t n) {
+  TaggedMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n;
+    mesh.points.push_back({std::cos(a), std::sin(a), 0.1 * std::cos(2 * a)});
+    mesh.polygons.push_back({i, (i + 1) % n, n});
+  }
+  mesh.points.push_back({0, 0, 0.3});
+  return mesh;
+}
+
+// From moderate to the largest valences, closed and at boundaries. Around such a vertex triangles are narrow, and their normals may
+// be anything: vertices that went the shortest way past their planes passed each other, and up to a hundred times as many were needed.
+TEST(hulls, of_poles_of_any_valence_sandwich_them) {
+  Outcomes outcomes;
+  for (const std::uint32_t n : {12u, 36u, 90u, 360u}) {
+    const auto hulls_of = [&](const TaggedMesh& mesh, const oracle::Rules& rules, std::size_t most,
+                              const char* name) {
+      const Surface surface =
+          testing::public_surface(testing::control_mesh(mesh), testing::options_of(rules));
+      const double error = 0.05 * surface.size();
+      const Hulls found = hull(surface, {.error = error}, {.max_splits = 100'000});
+      ASSERT_EQ(found.outcome, Outcome::complete) << name << n;
+      EXPECT_LE(std::max(found.inner->triangles.size(), found.outer->triangles.size()), most * n)
+          << name << n;
+      testing::expect_sandwich(mesh, rules, found, error, n > 36 ? 2 : 3, name + std::to_string(n),
+                               outcomes.counts);
+      ++outcomes.verified;
+    };
+    const oracle::Rules loop{.scheme = oracle::PrimalScheme::loop};
+    hulls_of(fan(n), loop, 40, "fan ");
+    if (n <= 36) hulls_of(bipyramid(n), loop, 80, "bipyramid ");
+    if (n <= 90) hulls_of(oracle::meshes::pole(n, false), {}, 120, "pole ");
+    if (n == 12) hulls_of(oracle::meshes::pole(n, true), {}, 80, "open pole ");
+  }
+  outcomes.print("poles");
+}
+
 // Faces much narrower than the tolerance: facets that are moved as far turn over, and the proof that they are off the
 // surface splits more pieces than a query usually may.
 TEST(hulls, of_poles_of_many_narrow_faces_sandwich_them) {

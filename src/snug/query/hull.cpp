@@ -48,6 +48,8 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
 constexpr double first_share = 0.4, min_share = 0x1p-6, min_share_apart = 0x1p-8;
 // And down to which it is made smaller at once where facets turn over.
 constexpr double turned_share = 0x1p-3;
+// How much longer than the shortest a displacement may be that goes the way the surface faces.
+constexpr double longest_detour = 1.25;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
 // of the quadratics that it is to be kept off.
 constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
@@ -299,15 +301,46 @@ class OneHull {
     return require_representable(p);
   }
 
-  // Each vertex as near as possible to where it was, beyond the planes of the triangles around it.
+  // Each vertex about as near as possible to where it was, beyond the planes of the triangles around it; `normals` and
+  // `offsets` are those of the planes, `areas` the triangles' area vectors. The way that all of these together face goes before
+  // the shortest one: beside a narrow triangle, whose normal may be anything, that leads past the next vertex. Nothing if there is no such place.
+  [[nodiscard]] static std::optional<Vector3> displacement(std::span<const std::uint32_t> around,
+                                                           std::span<const Vector3> areas,
+                                                           std::span<const Vector3> normals,
+                                                           std::span<const double> offsets) {
+    std::vector<Vector3> planes;
+    double largest = 0;
+    Vector3 facing;
+    for (const std::uint32_t t : around) {
+      largest = std::max(largest, offsets[t]);
+      facing = facing + areas[t];
+    }
+    facing = normalized(facing);
+    double along = 0;
+    for (const std::uint32_t t : around) {
+      if (normals[t] == Vector3{}) continue;
+      planes.push_back((largest / offsets[t]) * normals[t]);
+      const double cosine = dot(facing, normals[t]);
+      along = cosine > 0 ? std::max(along, offsets[t] / cosine) : INFINITY;
+    }
+    // A point of needles only: it stays, and is found to be on the surface.
+    if (planes.empty()) return Vector3{};
+    const Vector3 z = nearest_to_origin(planes);
+    const double square = length_sq(z);
+    if (!(square > 1e-16)) return std::nullopt;
+    // The shortest is largest / |z| long; lengths in mesh units have no squares.
+    return along * std::sqrt(square) <= longest_detour * largest ? along * facing : (largest / square) * z;
+  }
   void move_vertices(std::span<const double> errors) {
     const TrianglesAround around(mesh_);
     const double sign = inner_ != faces_.inward ? -1 : 1, float_loss = this->float_loss();
-    std::vector<Vector3> normals(mesh_.triangles.size());
-    std::vector<double> offsets(mesh_.triangles.size());
-    parallel_for(normals.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vector3> areas(mesh_.triangles.size()), normals(areas.size());
+    std::vector<double> offsets(areas.size());
+    parallel_for(areas.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
-        normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
+        const Triangle triangle = scaled(mesh_.positions, mesh_.triangles[t]);
+        areas[t] = sign * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+        normals[t] = sign * unit_normal(triangle);
         offsets[t] = errors[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss;
       }
     });
@@ -315,25 +348,14 @@ class OneHull {
     std::vector<double> moved(mesh_.positions.size());
     parallel_for(moved.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       monitor_.checkpoint();
-      std::vector<Vector3> planes;
       for (std::size_t v = begin; v < end; ++v) {
         Point3& p = facets_.positions[v];
-        planes.clear();
-        double largest = 0;
-        for (const std::uint32_t t : around[v]) largest = std::max(largest, offsets[t]);
-        for (const std::uint32_t t : around[v]) {
-          if (normals[t] != Vector3{}) planes.push_back((largest / offsets[t]) * normals[t]);
+        const std::optional<Vector3> by = displacement(around[v], areas, normals, offsets);
+        if (!by) {
+          moved[v] = INFINITY;
+          continue;
         }
-        if (!planes.empty()) {  // else a point of needles only: it stays, and is found to be on the surface
-          const Vector3 z = nearest_to_origin(planes);
-          const double square = length_sq(z);
-          if (!(square > 1e-16)) {
-            moved[v] = INFINITY;
-            continue;
-          }
-          p = p + (largest / square) * z;
-        }
-        p = as_written(p);
+        p = as_written(p + *by);
         moved[v] = enlarged(distance(scale_.apply(p), scale_.apply(mesh_.positions[v])));
       }
     });
@@ -601,17 +623,18 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
                          shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
-  PieceSet pieces;
+  std::optional<PieceSet> pieces(std::in_place);
   Hulls result;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
-    OneHull side(surface, options, inner, pieces, run);
+    OneHull side(surface, options, inner, *pieces, run);
     const std::vector<HullProblem> problems = side.run();
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
     result.closed = !side.has_border_edges();
     (inner ? result.inner : result.outer) = side.take();
     monitor_of(run).report(inner ? 0.3 : 0.6);
   }
+  pieces.reset();
   if (result.problems.empty()) result.problems = problems_of(handle, result, options, run);
   const bool too_few =
       std::any_of(result.problems.begin(), result.problems.end(),

@@ -298,12 +298,13 @@ namespace {
 
 // May the sets of two quadratics meet? The second one is split until it is as small
 // as the first, and flat.
-bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& normal,
+bool may_meet(const QuadraticTriangle& part, const Ball& ball, const std::array<Vector3, 2>& across,
               const QuadraticTriangle& q, double flat) {
   const Ball other = ball_of(q);
   const double between = distance(ball.centre, other.centre);
   if (between > enlarged(ball.radius + other.radius) + distance_rounding) return false;
-  if (apart(part, q, normal) || apart(part, q, unit_normal(q.corners))) return false;
+  if (apart(part, q, across[0]) || apart(part, q, across[1]) || apart(part, q, unit_normal(q.corners)))
+    return false;
   // Along the shortest way between the triangles of their corners.
   const NearestTriangles near = nearest(part.corners, q.corners);
   const auto at = [](const Triangle& t, const Barycentric& p) {
@@ -314,7 +315,7 @@ bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& no
   const double bent = std::max({max_abs(bend(q, 0)), max_abs(bend(q, 1)), max_abs(bend(q, 2))});
   if (small && bent <= flat) return true;
   for (const Corners& quarter : quarters(whole_triangle)) {
-    if (may_meet(part, ball, normal, restricted(q, quarter), flat)) return true;
+    if (may_meet(part, ball, across, restricted(q, quarter), flat)) return true;
   }
   return false;
 }
@@ -323,10 +324,17 @@ bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& no
 
 bool may_meet(const PieceSet& set, const QuadraticTriangle& part, double flat) {
   const Ball ball = ball_of(part);
+  // Across the plane and, in it, across the longest edge, where most of what is in the ball around a narrow part lies.
   const Vector3 normal = unit_normal(part.corners);
+  Vector3 along;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 edge = part.corners[(k + 1) % 3] - part.corners[k];
+    if (length_sq(edge) > length_sq(along)) along = edge;
+  }
+  const std::array<Vector3, 2> across{normal, normalized(cross(normal, along))};
   double reach = ball.radius;
   return set.visit_near(ball.centre, reach, [&](std::uint32_t piece) {
-    return may_meet(part, ball, normal, set[piece], std::max(flat, 4 * distance_rounding));
+    return may_meet(part, ball, across, set[piece], std::max(flat, 4 * distance_rounding));
   });
 }
 

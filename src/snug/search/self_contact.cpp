@@ -43,6 +43,40 @@ bool parted_along(const Point3& from, const Point3& to, const Point3& a, const P
   return dot(across[0], across[1]) < 0 || length(cross(across[0], across[1])) > rounding;
 }
 
+// A triangle's extents along axes of its own: these tell most triangles near a narrow one from it.
+class Slabs {
+ public:
+  explicit Slabs(const Triangle& triangle) {
+    const Vector3 normal = unit_normal(triangle);
+    Vector3 along;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3 edge = triangle[(k + 1) % 3] - triangle[k];
+      if (length_sq(edge) > length_sq(along)) along = edge;
+    }
+    axes_ = {normalized(cross(normal, along)), normal, normalized(along)};
+    for (std::size_t a = 0; a < 3; ++a) extents_[a] = extent_of(triangle, axes_[a]);
+  }
+  // Along one of the axes, certainly?
+  [[nodiscard]] bool apart(const Triangle& other) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Extent extent = extent_of(other, axes_[a]);
+      if (extent.lower - extents_[a].upper > distance_rounding ||
+          extents_[a].lower - extent.upper > distance_rounding)
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  static Extent extent_of(const Triangle& triangle, const Vector3& axis) {
+    Extent extent;
+    for (const Point3& p : triangle) extent.add(dot(axis, p - Point3{}));
+    return extent;
+  }
+  std::array<Vector3, 3> axes_;
+  std::array<Extent, 3> extents_;
+};
+
 bool may_touch(std::span<const Point3> points, const Names& a, const Names& b) {
   std::array<std::size_t, 3> in_a{}, in_b{};
   std::size_t common = 0;
@@ -91,8 +125,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_contacts(std::span<con
       monitor.checkpoint();
       for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
         int of_this = 0;
+        const Slabs slabs(set[i].corners);
         for_each_near(set, set[i], [&](std::uint32_t other) {
-          if (other <= i || of_this == max_of_one) return;
+          if (other <= i || of_this == max_of_one || slabs.apart(set[other].corners)) return;
           if (may_touch(points, triangles[i], triangles[other])) {
             found[b].emplace_back(static_cast<std::uint32_t>(i), other);
             ++of_this;
