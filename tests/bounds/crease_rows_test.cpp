@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/bounds/bounding_points.h>
+#include <snug/bounds/layout.h>
 #include <testing/patches.h>
 #include <testing/tagged.h>
 
@@ -53,9 +54,15 @@ struct Extent {
   }
 };
 
-Extent extent_of(const Stencils& rows, const Patch& patch) {
+Vector3 point_of(const BoundingRows& rows, std::size_t r, const Patch& patch) {
+  Vector3 point;
+  for (std::size_t c = 0; c < patch.points.size(); ++c) point = point + rows.weight(r, c) * patch.points[c];
+  return point;
+}
+
+Extent extent_of(const BoundingRows& rows, const Patch& patch) {
   Extent extent;
-  for (std::size_t r = 0; r < rows.row_count(); ++r) extent.add(rows.apply<Vector3>(r, patch.points));
+  for (std::size_t r = 0; r < rows.count(); ++r) extent.add(point_of(rows, r, patch));
   return extent;
 }
 
@@ -100,7 +107,7 @@ TEST(crease_rows, hold_the_limit_patch_and_little_more) {
         for (const Kind* kind : kinds_of_middle(surface)) {
           const CreaseRows made = make_crease_rows(*kind);
           ASSERT_TRUE(made.rows) << sharpness;
-          edges += made.rows->row_count() < 80;
+          edges += made.rows->count() < 80;
           for (int trial = 0; trial < 20; ++trial) {
             const Patch patch = numbers_on(*kind, random);
             const Extent hull = extent_of(*made.rows, patch);
@@ -130,6 +137,96 @@ TEST(crease_rows, hold_the_limit_patch_and_little_more) {
   EXPECT_GT(edges, 0u);
 }
 
+using Quadratic = std::array<Vector3, 6>;
+
+Vector3 value_at(const Quadratic& q, const TriangleParameter& at) {
+  const std::array<double, 3> w{1 - at.u - at.v, at.u, at.v};
+  Vector3 value;
+  for (std::size_t k = 0; k < 3; ++k) {
+    value = value + (w[k] * w[k]) * q[k] + (2 * w[k] * w[(k + 1) % 3]) * q[3 + k];
+  }
+  return value;
+}
+
+Vector3 difference(const BoundingRows& rows, std::size_t r, const Patch& patch, const Quadratic& q) {
+  Vector3 rest = point_of(rows, r, patch);
+  for (std::size_t k = 0; k < 6; ++k) rest = rest - rows.quadratic(k)[r] * q[k];
+  return rest;
+}
+
+// Whatever the net and the quadratic, the patch less the quadratic lies in the hull of what rows have of both.
+TEST(crease_rows, hold_the_patch_less_a_quadratic) {
+  std::mt19937_64 random(72);
+  std::normal_distribution<double> normal;
+  std::size_t checked = 0;
+  for (const double sharpness : {2.0, 3.4, 7.0}) {
+    for (const bool along_x : {true, false}) {
+      for (const bool far : {true, false}) {
+        const LimitSurface surface = surface_of(creased_grid(sharpness, along_x, far));
+        for (const Kind* kind : kinds_of_middle(surface)) {
+          const CreaseRows made = make_crease_rows(*kind);
+          ASSERT_TRUE(made.rows && made.rows->nets().empty());
+          ASSERT_EQ(made.rows->bezier_count(), made.rows->count());
+          for (int trial = 0; trial < 20; ++trial) {
+            const Patch patch = numbers_on(*kind, random);
+            Quadratic q;
+            for (Vector3& p : q) p = {10 * normal(random), normal(random), normal(random)};
+            Extent hull;
+            for (std::size_t r = 0; r < made.rows->count(); ++r)
+              hull.add(difference(*made.rows, r, patch, q));
+            for (const TriangleParameter& at : parameters(random)) {
+              const RelativePoint point = limit_point(patch, at);
+              const Vector3 rest = point.relative - value_at(q, at);
+              for (std::size_t a = 0; a < 3; ++a) {
+                ASSERT_GE(rest[a], hull.lower[a] - 1e-12 - point.error) << sharpness;
+                ASSERT_LE(rest[a], hull.upper[a] + 1e-12 + point.error) << sharpness;
+              }
+            }
+            ++checked;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(checked, 3u * 4 * 2 * 20);
+}
+
+// Squares along the crease, and products, are quadratics of the lattice that every crease keeps: nothing is left of them.
+TEST(crease_rows, leave_nothing_of_quadratics_that_are_met_exactly) {
+  for (const double sharpness : {2.0, 2.5, 6.0}) {
+    for (const bool along_x : {true, false}) {
+      for (const bool far : {true, false}) {
+        const LimitSurface surface = surface_of(creased_grid(sharpness, along_x, far));
+        for (const Kind* kind : kinds_of_middle(surface)) {
+          const CreaseRows made = make_crease_rows(*kind);
+          ASSERT_TRUE(made.rows);
+          Patch patch;
+          patch.kind = kind;
+          for (const auto& [u, v] : lattice_layout(*kind)) {
+            const double x = u + v, y = v;
+            patch.points.push_back({x * x - 1.0 / 3, y * y - 1.0 / 3, x * y});
+          }
+          constexpr std::array<std::array<double, 2>, 3> corner{{{0, 0}, {1, 0}, {1, 1}}};  // x and y
+          Quadratic q;
+          for (std::size_t k = 0; k < 6; ++k) {
+            const auto [ax, ay] = corner[k % 3];
+            const auto [bx, by] = k < 3 ? corner[k] : corner[(k + 1) % 3];
+            q[k] = {ax * bx, ay * by, (ax * by + bx * ay) / 2};
+          }
+          Vector3 most;
+          for (std::size_t r = 0; r < made.rows->count(); ++r) {
+            const Vector3 rest = difference(*made.rows, r, patch, q);
+            for (std::size_t a = 0; a < 3; ++a) most[a] = std::max(most[a], std::fabs(rest[a]));
+          }
+          EXPECT_LT(std::min(most.x, most.y), 1e-13) << sharpness;
+          EXPECT_GT(std::max(most.x, most.y), 1e-2) << "the crease is there";
+          EXPECT_LT(most.z, 1e-13) << sharpness;
+        }
+      }
+    }
+  }
+}
+
 // A ridge seen from the side: the crease, and not much behind it, bounds the height.
 TEST(crease_rows, see_how_round_the_crease_is) {
   for (const double sharpness : {2.0, 3.5, 6.0, 9.0}) {
@@ -143,8 +240,8 @@ TEST(crease_rows, see_how_round_the_crease_is) {
       const Patch patch = surface.patch(PatchId(p));
       const CreaseRows made = make_crease_rows(*patch.kind);
       double highest = -INFINITY, seen = -INFINITY;
-      for (std::size_t r = 0; r < made.rows->row_count(); ++r) {
-        highest = std::max(highest, made.rows->apply<Vector3>(r, patch.points).z);
+      for (std::size_t r = 0; r < made.rows->count(); ++r) {
+        highest = std::max(highest, point_of(*made.rows, r, patch).z);
       }
       for (int i = 0; i <= 64; ++i) {
         for (const TriangleParameter at : {TriangleParameter{i / 64.0, 0}, {0, i / 64.0}}) {

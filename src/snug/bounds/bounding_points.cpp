@@ -151,7 +151,7 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
     return out.add(part);
   }
   // A split brings Bezier points nearer.
-  const Stencils* const creased = level > 0 && kind.transient() ? library.crease_rows(kind) : nullptr;
+  const BoundingRows* const creased = level > 0 ? library.direct_rows(kind) : nullptr;
   if (creased) return out.add(*creased, patch);
   if (level >= (kind.transient() ? transient_split_levels : high_valence_split_levels)) {
     return out.add(patch.points, patch.error, patch.largest);

@@ -246,4 +246,48 @@ BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels) {
   return result;
 }
 
+BoundingRows polynomial_rows(std::size_t control_count, std::span<const double> weights, double entry_error,
+                             std::span<const QuadraticWeights> quadratic) {
+  const std::size_t count = quadratic.size();
+  SNUG_EXPECT(weights.size() == count * control_count);
+  BoundingRows result;
+  result.count_ = result.bezier_count_ = count;
+  result.control_count_ = control_count;
+  result.entry_error_ = entry_error;
+  result.weights_.resize(weights.size());
+  for (std::size_t r = 0; r < count; ++r) {
+    double sum = 0;
+    for (std::size_t c = 0; c < control_count; ++c) {
+      const double weight = weights[r * control_count + c];
+      result.weights_[c * count + r] = weight;
+      sum += std::fabs(weight);
+    }
+    result.abs_sum_ = std::max(result.abs_sum_, sum * (1 + gamma_bound(control_count)));
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (const QuadraticWeights& row : quadratic) result.quadratic_.push_back(row[k]);
+  }
+  return result;
+}
+
+BoundingRows polynomial_rows(const Kind& kind) {
+  const BezierRows& form = kind.form();
+  const std::size_t count = form.rows.row_count(), width = kind.control_count();
+  std::vector<double> weights(count * width, 0.0);
+  for (std::size_t r = 0; r < count; ++r) {
+    const Stencils::Row row = form.rows.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i)
+      weights[r * width + row.sources[i]] += row.weights[i];
+  }
+  std::vector<QuadraticWeights> quadratic;
+  for (std::size_t part = 0; part < form.parts; ++part) {
+    const ParameterTriangle place = form.parts == 1 ? whole_patch : part_of(whole_patch, part);
+    for (std::size_t j = 0; j <= form.degree; ++j) {
+      for (std::size_t i = 0; i + j <= form.degree; ++i)
+        quadratic.push_back(raised_quadratic(place, form.degree, i, j));
+    }
+  }
+  return polynomial_rows(width, weights, form.rows.max_error(), quadratic);
+}
+
 }  // namespace snug

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <snug/bounds/parameter_triangle.h>
@@ -51,6 +52,8 @@ class BoundingRows {
 
  private:
   friend BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels);
+  friend BoundingRows polynomial_rows(std::size_t control_count, std::span<const double> weights,
+                                      double entry_error, std::span<const QuadraticWeights> quadratic);
   std::size_t count_ = 0, control_count_ = 0, bezier_count_ = 0;
   std::vector<double> weights_, quadratic_;
   std::vector<Net> nets_;
@@ -69,6 +72,12 @@ inline constexpr unsigned deepest_tip = 24;
 /// Requires:  a patch, no polygon.
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
 [[nodiscard]] BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels = deepest_tip);
+
+/// Rows of Bezier points alone, from their weights row by row, entry_error() and what quadratic() has of each.
+[[nodiscard]] BoundingRows polynomial_rows(std::size_t control_count, std::span<const double> weights,
+                                           double entry_error, std::span<const QuadraticWeights> quadratic);
+/// The Bezier points of a polynomial kind of degree 2 or more as it is, without a split.
+[[nodiscard]] BoundingRows polynomial_rows(const Kind& kind);
 
 /// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every
 /// level? Only such tips can be bounded by tables of their own.

@@ -9,8 +9,11 @@ const BoundingRows& BoundsCache::rows(const Kind& kind) {
   });
 }
 
-const Stencils* BoundsCache::crease_rows(const Kind& kind) {
-  const CreaseRows& made = crease_rows_.get(kind.id(), [&] { return make_crease_rows(kind); });
+const BoundingRows* BoundsCache::direct_rows(const Kind& kind) {
+  if (kind.polynomial() ? kind.form().degree < 2 : !kind.transient()) return nullptr;
+  const CreaseRows& made = direct_rows_.get(kind.id(), [&] {
+    return kind.polynomial() ? CreaseRows{polynomial_rows(kind)} : make_crease_rows(kind);
+  });
   return made.rows ? &*made.rows : nullptr;
 }
 

@@ -36,9 +36,10 @@ class BoundsCache {
   [[nodiscard]] const BoundingRows& rows(const Kind& kind);
   /// One level of them.
   [[nodiscard]] const BoundingRows& level_rows(const Kind& kind);
+  /// Rows of a patch that is one polynomial or a few, without a split: of polynomial kinds of degree 2
+  /// and more, and those of make_crease_rows(). Null for others.
+  [[nodiscard]] const BoundingRows* direct_rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth(). It stays as long as this.
-  /// See make_crease_rows(); null where there are none.
-  [[nodiscard]] const Stencils* crease_rows(const Kind& kind);
   [[nodiscard]] const BoundTable& table(const Kind& kind);
   /// The same for the boxes of tips of this kind.
   [[nodiscard]] const TipTable& tip_table(const Kind& kind);
@@ -48,14 +49,14 @@ class BoundsCache {
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const {
-    return rows_.bytes() + crease_rows_.bytes() + level_rows_.bytes() + tables_.bytes() +
+    return rows_.bytes() + direct_rows_.bytes() + level_rows_.bytes() + tables_.bytes() +
            tip_tables_.bytes() + quadratics_.bytes();
   }
 
  private:
   KindCache kinds_;
   KindSlots<BoundingRows> rows_, level_rows_;
-  KindSlots<CreaseRows> crease_rows_;
+  KindSlots<CreaseRows> direct_rows_;
   KindSlots<BoundTable> tables_;
   KindSlots<TipTable> tip_tables_;
   KindSlots<QuadraticRows> quadratics_;

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <snug/bounds/layout.h>
+#include <snug/geometry/rounding.h>
 #include <snug/scheme/bezier.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {
@@ -218,18 +221,28 @@ RowTriangle cut(RowTriangle triangle, double t, std::size_t edge, bool beyond) {
   return triangle;
 }
 
+// Where a corner of a piece is, in the patch, from the row of its point: rows make of the lattice the parameters.
+// These are whole numbers over a power of two.
+std::array<double, 3> place_of(const Row& row) {
+  double x = -1, y = -1;
+  for (std::size_t c = 0; c < 16; ++c) {
+    x += middle(row[c]) * static_cast<double>(c % 4);
+    y += middle(row[c]) * static_cast<double>(c / 4);
+  }
+  const auto exact = [](double value) {
+    const double near = std::ldexp(std::round(std::ldexp(value, 16)), -16);
+    SNUG_EXPECT(std::fabs(near - value) < 1e-9);
+    return near;
+  };
+  x = exact(x);
+  y = exact(y);
+  SNUG_EXPECT(0 <= y && y <= x && x <= 1);
+  return {1 - x, x - y, y};
+}
+
 class RowWriter {
  public:
-  RowWriter(const CreaseLine& line, Stencils& out) : line_(line), out_(out) {}
-  void add(const Row& row) {
-    for (std::size_t c = 0; c < 16; ++c) {
-      if (row[c] != Interval{}) out_.add(line_.place[c], row[c]);
-    }
-    out_.end_row();
-  }
-  void add(const RowTriangle& triangle) {
-    for (const Row& row : triangle) add(row);
-  }
+  explicit RowWriter(const CreaseLine& line) : line_(line) {}
   // The half of the quad that is the patch, as far as it is `width` from the crease or more, if it was a
   // boundary: a triangle where an edge is on the crease, else two beside the corner that is.
   void add_beyond(double width, const Cubic& across, const Cubic& along) {
@@ -244,9 +257,25 @@ class RowWriter {
     add(half(across, stretch(along, begin, end)));
     if (!line_.along_edge() && begin == 0) return;
     const Cubic beside = line_.along_edge() ? stretch(along, end, 1) : stretch(along, 0, begin);
+    std::array<Row, 16> rectangle;
+    std::size_t at = 0;
     for (const CubicWeights& a : placed(across)) {
-      for (const CubicWeights& b : beside) add(line_.along_x ? tensor(b, a) : tensor(a, b));
+      for (const CubicWeights& b : beside) rectangle[at++] = line_.along_x ? tensor(b, a) : tensor(a, b);
     }
+    add(rectangle);
+  }
+  [[nodiscard]] BoundingRows rows() const {
+    std::vector<double> weights(16 * rows_.size());
+    double most = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      double error = 0;
+      for (std::size_t c = 0; c < 16; ++c) {
+        weights[16 * r + line_.place[c]] = middle(rows_[r][c]);
+        error += radius(rows_[r][c]);
+      }
+      most = std::max(most, enlarged(error));
+    }
+    return polynomial_rows(16, weights, most, quadratic_);
   }
 
  private:
@@ -260,8 +289,27 @@ class RowWriter {
     return line_.along_x ? half_of(along, placed(across)) : half_of(placed(across), along);
   }
 
+  void add(const RowTriangle& triangle) {
+    rows_.insert(rows_.end(), triangle.begin(), triangle.end());
+    const ParameterTriangle place{place_of(triangle[bezier_index(6, 0, 0)]),
+                                  place_of(triangle[bezier_index(6, 6, 0)]),
+                                  place_of(triangle[bezier_index(6, 0, 6)])};
+    for (std::size_t j = 0; j <= 6; ++j) {
+      for (std::size_t i = 0; i + j <= 6; ++i) quadratic_.push_back(raised_quadratic(place, 6, i, j));
+    }
+  }
+  // The last index runs first.
+  void add(const std::array<Row, 16>& rectangle) {
+    rows_.insert(rows_.end(), rectangle.begin(), rectangle.end());
+    const ParameterTriangle place{place_of(rectangle[0]), place_of(rectangle[12]), place_of(rectangle[3])};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) quadratic_.push_back(raised_quadratic(place, i, j));
+    }
+  }
+
   const CreaseLine& line_;
-  Stencils& out_;
+  std::vector<Row> rows_;
+  std::vector<QuadraticWeights> quadratic_;
 };
 
 // Below it a few levels of subdivision leave nothing that passes.
@@ -269,17 +317,12 @@ constexpr double min_sharpness = 2;
 
 }  // namespace
 
-std::size_t CreaseRows::bytes() const {
-  return sizeof(*this) + (rows ? rows->row_count() * 16 * (sizeof(double) + sizeof(std::uint32_t)) : 0);
-}
-
 CreaseRows make_crease_rows(const Kind& kind) {
   const auto line = crease_line(kind);
   if (!line || line->sharpness < min_sharpness) return {};
   const auto levels = static_cast<unsigned>(std::floor(line->sharpness));
   const double width = std::ldexp(1.0, -static_cast<int>(levels)), rest = line->sharpness - levels;
-  CreaseRows result;
-  RowWriter writer(*line, result.rows.emplace());
+  RowWriter writer(*line);
 
   Columns columns = unit_columns();
   const Cubic along = segment(columns, 0);
@@ -294,7 +337,7 @@ CreaseRows make_crease_rows(const Kind& kind) {
     const double step = width / static_cast<double>(pieces), begin = step * static_cast<double>(piece);
     writer.add_strip(begin, begin + step, segment(columns, piece), along);
   }
-  return result;
+  return {writer.rows()};
 }
 
 }  // namespace snug

@@ -11,6 +11,15 @@ Weights middle_of(const Weights& a, const Weights& b) {
   return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
 }
 
+// Adds a share of the polar form at two parameters.
+void add_polar(double share, const Weights& s, const Weights& t, QuadraticWeights& sum) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    sum[k] += share * (s[k] * t[k]);
+    sum[3 + k] += share * (s[k] * t[next] + s[next] * t[k]);
+  }
+}
+
 }  // namespace
 
 ParameterTriangle child_of(const ParameterTriangle& t, std::size_t child) {
@@ -35,13 +44,7 @@ QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t de
   const std::array<std::size_t, 3> times{degree - i - j, i, j};
   QuadraticWeights weights{};
   const auto add = [&](std::size_t pairs, const Weights& s, const Weights& t) {
-    if (pairs == 0) return;
-    const auto share = static_cast<double>(pairs);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3;
-      weights[k] += share * (s[k] * t[k]);
-      weights[3 + k] += share * (s[k] * t[next] + s[next] * t[k]);
-    }
+    if (pairs > 0) add_polar(static_cast<double>(pairs), s, t, weights);
   };
   for (std::size_t k = 0; k < 3; ++k) {
     add(times[k] * (times[k] - 1) / 2 * (times[k] > 0), piece[k], piece[k]);
@@ -49,6 +52,34 @@ QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t de
   }
   const auto pairs = static_cast<double>(degree * (degree - 1) / 2);
   for (double& weight : weights) weight /= pairs;
+  return weights;
+}
+
+// The mean of the polar form over all pairs of different arguments in one direction, and such pairs in the other.
+QuadraticWeights raised_quadratic(const ParameterTriangle& corners, std::size_t i, std::size_t j) {
+  SNUG_EXPECT(i <= 3 && j <= 3);
+  const auto& [origin, across, along] = corners;
+  const auto corner = [&](std::size_t a, std::size_t b) {
+    Weights at = origin;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (a == 1) at[k] += across[k] - origin[k];
+      if (b == 1) at[k] += along[k] - origin[k];
+    }
+    return at;
+  };
+  // Of three arguments, `ones` of which are 1: ordered pairs of different ones that are a and b.
+  const auto pairs = [](std::size_t ones, std::size_t a, std::size_t b) {
+    const std::size_t first = a == 1 ? ones : 3 - ones;
+    return static_cast<double>(a == b ? first * (first - (first > 0)) : first * (3 - first));
+  };
+  QuadraticWeights weights{};
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      const double count = pairs(i, a / 2, a % 2) * pairs(j, b / 2, b % 2);
+      if (count > 0) add_polar(count, corner(a / 2, b / 2), corner(a % 2, b % 2), weights);
+    }
+  }
+  for (double& weight : weights) weight /= 36;
   return weights;
 }
 

@@ -27,5 +27,9 @@ using QuadraticWeights = std::array<double, 6>;
 /// Requires:  degree at least 2, i + j at most as much.
 [[nodiscard]] QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t degree,
                                                 std::size_t i, std::size_t j);
+/// The same of degree 3 in each direction over a parallelogram: (i, j) of 3 from its first corner to the second and
+/// to the third.
+[[nodiscard]] QuadraticWeights raised_quadratic(const ParameterTriangle& corners, std::size_t i,
+                                                std::size_t j);
 
 }  // namespace snug

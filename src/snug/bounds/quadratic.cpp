@@ -201,7 +201,6 @@ void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
 void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
   const std::vector<LayoutPoint> layout = lattice_layout(kind);
   if (layout.empty()) return;
-  // Rows of a library may be gone once others were made: what is needed of the pieces comes first.
   struct Piece {
     std::vector<LayoutPoint> layout;
     std::vector<double> largest;
@@ -209,17 +208,16 @@ void QuadraticRows::make_lattice(BoundsCache& library, const Kind& kind) {
   };
   std::vector<Piece> pieces;
   double below = 0;
-  std::vector<const Kind*> kinds;
-  for (const BoundingRows::Net& net : library.level_rows(kind).nets()) kinds.push_back(net.kind);
-  for (const Kind* const piece_kind : kinds) {
-    if (!piece_kind->transient() || !has_quadratic_rows(*piece_kind)) return;
-    const QuadraticRows& piece = library.quadratic_rows(*piece_kind);
+  const BoundingRows* const direct = library.direct_rows(kind);
+  const BoundingRows rows = direct ? *direct : make_bounding_rows(kind, 1);
+  for (const BoundingRows::Net& net : rows.nets()) {
+    if (!net.kind->transient() || !has_quadratic_rows(*net.kind)) return;
+    const QuadraticRows& piece = library.quadratic_rows(*net.kind);
     if (!piece.lattice_) return;
     below = std::max(below, piece.offset_error_);
     pieces.push_back({piece.layout_, piece.largest_});
     for (const double weight : piece.largest_) pieces.back().sum += weight;
   }
-  const BoundingRows& rows = library.level_rows(kind);
   double size = 1, error = 0;
   for (const LayoutPoint& at : layout) size = std::max({size, std::fabs(at[0]), std::fabs(at[1])});
   const auto expect = [&](std::size_t r, double u, double v) {
@@ -353,9 +351,6 @@ QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind) {
   SNUG_EXPECT(has_quadratic_rows(kind));
   QuadraticRows result;
   if (kind.transient()) {
-    for (const BoundingRows::Net& net : library.level_rows(kind).nets()) {
-      result.to_level_nets_.push_back(restriction_to(net.place));
-    }
     result.make_lattice(library, kind);
     return result;
   }
@@ -425,17 +420,23 @@ class Comparison {
   // A piece in its kind's order.
   void add(const Patch& piece, const Quadratic& q, double given, unsigned level) {
     const Kind& kind = *piece.kind;
-    if (!has_quadratic_rows(kind)) return add_parts(piece, q, given, level);
+    if (!has_quadratic_rows(kind) || kind.transient()) return add_parts(piece, q, given, level);
     if (kind.polynomial() && kind.form().degree == 1) return add_plane(piece, q, given);
     const BoundingRows& rows = library_->level_rows(kind);
-    bounding_points(rows, piece, points_);
-    const double size = std::max(points_.largest, largest_of(q));
-    compare(points_.coordinates(), points_.error, rows, q, size, given);
+    const double size = add_points(rows, piece, q, given);
     if (rows.nets().empty() || useless()) return;
     const std::size_t first = opened_;
     for (const BoundingRows::Net& net : rows.nets()) points_.take_net(net, net.begin, next_open().piece);
     measure_from(first, library_->quadratic_rows(kind).to_level_nets(), q, given + gamma_bound(16) * size,
                  level + 1);
+  }
+
+  // All that a piece's rows have of it but its nets; what none of its points or those of q is larger than.
+  double add_points(const BoundingRows& rows, const Patch& piece, const Quadratic& q, double given) {
+    bounding_points(rows, piece, points_);
+    const double size = std::max(points_.largest, largest_of(q));
+    compare(points_.coordinates(), points_.error, rows, q, size, given);
+    return size;
   }
 
   // Rows of a library may be gone once others are made, as this may do: nets come before it.
@@ -528,19 +529,28 @@ class Comparison {
                                      8 * unit_roundoff * (piece.largest + largest_of(q)));
   }
   void add_parts(const Patch& piece, const Quadratic& q, double given, unsigned level) {
-    for (unsigned child = 0; child < 4; ++child) {
-      Open part;
-      part.piece = split(piece, child);
-      part.quadratic = restricted(q, restriction_to(child_of(whole_patch, child)));
-      part.quadratic = turned(part.quadratic, part.piece.first);
+    static const std::array<Restriction, 4> to_child{
+        restriction_to(child_of(whole_patch, 0)), restriction_to(child_of(whole_patch, 1)),
+        restriction_to(child_of(whole_patch, 2)), restriction_to(child_of(whole_patch, 3))};
+    const double off = given + gamma_bound(16) * largest_of(q);
+    for (unsigned child = 0; child < 4 && !useless(); ++child) {
+      Open& part = next_open();
+      split(piece, child, part.piece);
+      const Kind& kind = *part.piece.kind;
+      part.quadratic = turned(restricted(q, to_child[child]), part.piece.first);
       part.piece.first = 0;
       part.piece.path = {};
-      const double off = given + gamma_bound(16) * largest_of(q);
-      if (part.piece.kind->polynomial()) {
+      // Those of a kind that few share are compared as they are where that is all of them.
+      const BoundingRows* const direct = piece.kind->transient() ? library_->direct_rows(kind) : nullptr;
+      if (!direct && !kind.polynomial()) {
+        measure(part, off, level + 1);
+        continue;
+      }
+      --opened_;
+      if (!direct) {
         add(part.piece, part.quadratic, off, level + 1);
       } else {
-        measure(part, off, level + 1);
-        next_open() = std::move(part);
+        add_points(*direct, part.piece, part.quadratic, off);
       }
     }
   }
@@ -555,9 +565,26 @@ class Comparison {
   Apart farthest_;
 };
 
+// In the patch's order. Where there are direct rows they have them, and need no kinds of deeper levels.
+std::array<Vector3, 3> corners_of(BoundsCache& library, const Patch& patch) {
+  const BoundingRows* const rows = library.direct_rows(*patch.kind);
+  if (!rows) return limit_corners(patch);
+  std::array<Vector3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double* const at_corner = rows->quadratic(patch.to_kind(k));
+    const auto row =
+        static_cast<std::size_t>(std::find(at_corner, at_corner + rows->count(), 1.0) - at_corner);
+    SNUG_EXPECT(row < rows->count());
+    for (std::size_t c = 0; c < patch.points.size(); ++c) {
+      corners[k] = corners[k] + rows->weight(row, c) * patch.points[c];
+    }
+  }
+  return corners;
+}
+
 // Through the limits of corners and of the middles of edges.
-Quadratic through_limits(const Patch& patch) {
-  const std::array<Vector3, 3> p = limit_corners(patch), m = limit_corners(split(patch, 3));
+Quadratic through_limits(BoundsCache& library, const Patch& patch) {
+  const std::array<Vector3, 3> p = corners_of(library, patch), m = corners_of(library, split(patch, 3));
   Quadratic q{p[0], p[1], p[2]};
   for (std::size_t k = 0; k < 3; ++k) {
     q[3 + k] = 2.0 * m[(k + 2) % 3] - 0.5 * (p[k] + p[(k + 1) % 3]);
@@ -597,7 +624,7 @@ Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull,
     Patch whole = patch;
     whole.first = 0;
     whole.path = {};
-    fit.quadratic = through_limits(whole);
+    fit.quadratic = through_limits(library, whole);
   } else if (kind.polynomial() && kind.form().degree == 1) {
     for (std::size_t k = 0; k < 3; ++k) fit.quadratic[k] = kind.bezier().apply<Vector3>(k, patch.points);
     for (std::size_t k = 0; k < 3; ++k) {

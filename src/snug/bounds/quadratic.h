@@ -88,7 +88,8 @@ class QuadraticRows {
 ///
 /// Guarantee: both errors, rounding and the patch's own error included. Both are infinite where the error shows to be above
 ///            use.useless.
-/// Requires:  hull: of bounding_points() for this patch, no tip of it refined; none is needed unless kind->cacheable().
+/// Requires:  hull: of bounding_points() for this patch, no tip of it refined, or by the rows that the library keeps of
+///            its kind, without boxes of tips; none is needed unless kind->cacheable().
 /// Tightness: in the median 1.3 times the largest distance over all parameters.
 /// Cost:      given the hull about 0.1 microseconds; with extraordinary corners 0.3 each, and one product a
 ///            level that is refined.
