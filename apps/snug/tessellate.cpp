@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 #include <support/atomic_file.h>
 
+#include <utility>
+
 #include "coarsen.h"
 #include "common.h"
 #include "length.h"
@@ -63,27 +65,33 @@ TessellateOptions how_to(const Options& options, const Surface& surface) {
   return how;
 }
 
-ControlMesh mesh_of(const Tessellation& tessellation) {
+// Takes all but the normals: a file is made in memory, and there need not be more beside it.
+ControlMesh take_mesh(Tessellation& tessellation) {
   ControlMesh mesh;
-  mesh.points = tessellation.positions;
-  mesh.face_vertices.reserve(3 * tessellation.triangles.size());
-  mesh.face_offsets.reserve(tessellation.triangles.size() + 1);
-  for (const auto& [a, b, c] : tessellation.triangles) {
-    mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
-  }
+  mesh.points = std::move(tessellation.positions);
+  tessellation.parameters = {};
+  tessellation.owners = {};
+  const std::vector<std::array<std::uint32_t, 3>> triangles = std::exchange(tessellation.triangles, {});
+  mesh.face_vertices.reserve(3 * triangles.size());
+  mesh.face_offsets.reserve(triangles.size() + 1);
+  for (const auto& [a, b, c] : triangles) mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
   return mesh;
 }
 
-void write_summary(Report& report, const Options& options, const Tessellation& result) {
+struct Counts {
+  std::size_t vertices, triangles;
+};
+
+void write_summary(Report& report, const Options& options, const Counts& counts, const Tessellation& result) {
   if (report.json()) {
     JsonWriter& json = report.write();
-    json.field("vertices", result.positions.size()).field("triangles", result.triangles.size());
+    json.field("vertices", counts.vertices).field("triangles", counts.triangles);
     json.field("error_bound", result.error_bound).field("position_error", result.position_error);
     json.field("outcome", name_of(result.outcome));
   }
   if (options.output == "-") return;
   report.text(fmt::format("{}: {} vertices, {} triangles within {} of the limit surface, both ways",
-                          options.output, result.positions.size(), result.triangles.size(),
+                          options.output, counts.vertices, counts.triangles,
                           text_at_most(result.error_bound, true)));
   if (result.outcome == Outcome::complete) return;
   report.text(options.max_triangles && *options.max_triangles <= options.max_splits
@@ -106,9 +114,10 @@ ExitStatus run(const Options& options) {
     result = options.coarsen ? coarsened(surface, how, run) : tessellate(surface, how, run);
   });
   AtomicFile file(options.output);
-  write_facets(mesh_of(result), file, options.output, options, result.normals);
+  const Counts counts{result.positions.size(), result.triangles.size()};
+  write_facets(take_mesh(result), file, options.output, options, result.normals);
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  write_summary(report, options, result);
+  write_summary(report, options, counts, result);
   return report.finish(result.outcome == Outcome::complete, {&file});
 }
 

@@ -60,12 +60,12 @@ struct Tessellation {
 ///            belongs to as many triangles as the surface has sheets there, and no vertex lies inside an edge.
 /// Holes and faces without a surface are omitted. Triangles without area are kept: where control vertices
 /// coincide, omitting them would open the surface.
-/// Budget:    5,000,000 triangles, even if max_triangles allows more; 250 bytes each.
+/// Budget:    5,000,000 triangles, even if max_triangles allows more; 200 bytes each.
 /// Errors:    InputError: (value) for options that are not finite and positive, if none is given, for an error
 ///            below the precision of doubles (names the smallest allowed), and for fewer max_triangles than the
 ///            patches need (names the number, if the budget allows it); (unrepresentable) if a coordinate does not fit. Interrupted.
 /// Cost:      0.5 to 2 microseconds a triangle on one core, most for irregular patches; with max_triangles about
-///            ten times that. 250 bytes a triangle.
+///            ten times that. 200 bytes a triangle.
 /// Source:    derivations/tessellation.md.
 [[nodiscard]] SNUG_API Tessellation tessellate(const Surface& surface, const TessellateOptions& options,
                                                const Run& run = {});

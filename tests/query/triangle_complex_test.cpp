@@ -49,38 +49,74 @@ TEST(triangle_complex, cuts_cover_the_triangle) {
 // Edges as pairs of ends, with what each triangle on them does.
 std::map<std::pair<Index, Index>, std::set<Index>> edges_by_ends(const TriangleComplex& complex) {
   std::map<std::pair<Index, Index>, std::set<Index>> result;
+  std::map<Index, std::pair<Index, Index>> ends;
   for (std::size_t t = 0; t < complex.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = complex.corners(t)[k], b = complex.corners(t)[(k + 1) % 3], e = complex.edge_of(t, k);
-      EXPECT_TRUE((complex.edge(e).from == a && complex.edge(e).to == b) ||
-                  (complex.edge(e).from == b && complex.edge(e).to == a));
-      EXPECT_EQ(complex.edge(e).halves, TriangleComplex::none) << "an edge that is split is still used";
+      const Index a = complex.corner(t, k), b = complex.corner(t, (k + 1) % 3), e = complex.edge_of(t, k);
+      EXPECT_EQ(ends.emplace(e, std::minmax(a, b)).first->second,
+                (std::pair<Index, Index>(std::minmax(a, b))))
+          << "an edge with different ends";
       result[std::minmax(a, b)].insert(e);
     }
   }
   return result;
 }
 
-void split_marked(TriangleComplex& complex, std::mt19937_64& random) {
-  complex.number_middles([](std::size_t, std::size_t) {});
-  const std::size_t old = complex.triangle_count();
-  std::vector<std::pair<std::size_t, TriangleSplit>> cuts;
-  std::size_t triangles = 0, edges = 0;
-  for (std::size_t t = 0; t < old; ++t) {
-    if (complex.marks(t) == 0) continue;
-    cuts.emplace_back(t, split_of(complex.marks(t), random() % split_count(complex.marks(t))));
-    triangles += cuts.back().second.count - 1u;
-    edges += TriangleComplex::inner_edges(cuts.back().second);
+// What is known of sites and triangles, as a user keeps it.
+struct OnPatches {
+  explicit OnPatches(const TriangleComplex& complex) {
+    constexpr std::array<std::array<double, 2>, 3> places{{{0, 0}, {1, 0}, {0, 1}}};
+    for (std::size_t t = 0; t < complex.triangle_count(); ++t) {
+      patch.push_back(complex.root_patches()[t].value());
+      for (std::size_t k = 0; k < 3; ++k) at.push_back(places[k]);
+    }
   }
-  std::size_t next = old;
-  auto edge = static_cast<Index>(complex.edge_count());
-  complex.extend(triangles, edges);
-  for (const auto& [t, split] : cuts) {
-    complex.cut(t, split, next, edge);
-    next += split.count - 1u;
-    edge += static_cast<Index>(TriangleComplex::inner_edges(split));
+  std::vector<std::uint32_t> patch;       // of triangles
+  std::vector<std::array<double, 2>> at;  // of sites
+};
+
+void split_marked(TriangleComplex& complex, std::mt19937_64& random, OnPatches& known) {
+  const std::vector<TriangleComplex::Cut> cuts = complex.split_edges([&](std::size_t t, std::size_t k) {
+    const auto a = known.at[complex.sites(t)[k]], b = known.at[complex.sites(t)[(k + 1) % 3]];
+    known.at.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2});
+  });
+  ASSERT_EQ(known.at.size(), complex.site_count());
+  for (const TriangleComplex::Cut& cut : cuts) {
+    const unsigned marks = complex.marks(cut.triangle);
+    const TriangleSplit split = split_of(marks, random() % split_count(marks));
+    known.patch.resize(complex.triangle_count());
+    for (unsigned i = 1; i < split.count; ++i) known.patch[cut.first_new + i - 1] = known.patch[cut.triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((marks >> k) % 2 == 0) continue;
+      EXPECT_EQ(complex.middle(cut.triangle, k), complex.vertex_at(cut.middles[k]));
+    }
+    complex.cut(cut, split);
   }
   complex.clear_marks();
+}
+
+// Triangles cover the parameters of each root patch, oriented alike; vertices at the same place of a patch are one site unless
+// they lie on its sides.
+void expect_covered(const TriangleComplex& complex, const OnPatches& known) {
+  std::map<std::uint32_t, double> areas;
+  std::map<std::pair<std::uint32_t, std::array<double, 2>>, Index> sites;
+  for (std::size_t t = 0; t < complex.triangle_count(); ++t) {
+    std::array<std::array<double, 2>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index site = complex.sites(t)[k];
+      p[k] = known.at[site];
+      const Index first = sites.emplace(std::pair(known.patch[t], p[k]), site).first->second;
+      EXPECT_EQ(complex.vertex_at(first), complex.vertex_at(site)) << "two vertices at one place";
+      const bool inside = p[k][0] > 0 && p[k][1] > 0 && p[k][0] + p[k][1] < 1;
+      EXPECT_TRUE(!inside || first == site);
+    }
+    const double twice =
+        (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+    EXPECT_GT(twice, 0);
+    areas[known.patch[t]] += twice;
+  }
+  EXPECT_EQ(areas.size(), complex.root_patches().size());
+  for (const auto& [patch, area] : areas) EXPECT_EQ(area, 1);
 }
 
 // Whatever is marked, in every scheme, with polygons beside quads and whatever is not manifold: edges stay whole,
@@ -89,9 +125,10 @@ TEST(triangle_complex, stays_conforming_and_simple) {
   std::mt19937_64 random(51);
   testing::for_each_surface(52, [&](const testing::NamedSurface& named) {
     TriangleComplex complex(named.surface);
+    OnPatches known(complex);
     int steps = 0;
     for (bool first = true; complex.mark_what_is_not_simple() || first; first = false) {
-      split_marked(complex, random);
+      split_marked(complex, random, known);
       ASSERT_LT(++steps, 8) << named.name;
     }
     for (int step = 0; step < 3; ++step) {
@@ -103,7 +140,8 @@ TEST(triangle_complex, stays_conforming_and_simple) {
       for (std::size_t t = 0; t < complex.triangle_count(); ++t) {
         if (random() % 4 == 0) complex.mark(complex.edge_of(t, random() % 3));
       }
-      split_marked(complex, random);
+      split_marked(complex, random, known);
+      expect_covered(complex, known);
       EXPECT_FALSE(complex.mark_what_is_not_simple()) << named.name;
       complex.clear_marks();
     }

@@ -79,7 +79,7 @@ class QuadraticRows {
   bool lattice_ = false;  // limit points of the places are the parameters themselves, up to the error
 };
 
-/// Of a transient kind those of a level alone, and no fit.
+/// Of a transient kind the lattice alone, and no fit.
 /// Requires:  a patch, no polygon, with has_quadratic_rows().
 /// Cost:      0.1 to 1 ms up to valence 12.
 [[nodiscard]] QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);

@@ -28,6 +28,7 @@ class PieceQuadratic {
   PieceQuadratic(const QuadraticTriangle& near, const PiecePath& path);
 
   [[nodiscard]] double error() const { return error_; }
+  [[nodiscard]] const PiecePath& path() const { return path_; }
   /// Upper bound of the distance of a flat triangle on this piece.
   ///
   /// Guarantee: Flatness::error, rounding included, for exactly these corners; it covers every point of the patch

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <deque>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -16,6 +16,7 @@
 #include <snug/query/triangle_complex.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/blocks.h>
 #include <support/contract.h>
 #include <support/error.h>
 #include <support/parallel.h>
@@ -37,23 +38,10 @@ constexpr double shortest_side = 0x1p-46;  // in parameters
 // Whatever the budget is: edges, also those that were split, have 31 bits.
 constexpr std::uint64_t triangle_limit = std::uint64_t{1} << 29;
 
+// Triangles that are examined at once: each may take room for a quadratic.
+constexpr std::size_t batch_size = 8192;
+
 constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
-
-struct Vertex {
-  Point3 written;  // in mesh units
-  TriangleParameter at;
-  double error = 0;          // a coordinate, in scaled units
-  Index patch = UINT32_MAX;  // that it lies on
-};
-
-// A piece of a root patch by splits in four. Where its quadratic is `coarse` only the triangle of the whole
-// piece is proved, and it is split in four or not at all.
-struct Tile {
-  PiecePath path;
-  Index patch;
-  Index quadratic = UINT32_MAX;  // unless coarse, once it is known
-  bool known = false, coarse = false, thick = false;
-};
 
 // The quadratics of pieces that have one, by number.
 class Quadratics {
@@ -63,7 +51,7 @@ class Quadratics {
   // Room for one.
   [[nodiscard]] Index add() {
     if (free_.empty()) {
-      all_.emplace_back();
+      all_.resize(all_.size() + 1);
       return static_cast<Index>(all_.size() - 1);
     }
     const Index i = free_.back();
@@ -73,23 +61,35 @@ class Quadratics {
   void drop(Index i) { free_.push_back(i); }
 
  private:
-  std::deque<PieceQuadratic> all_;
+  Blocks<PieceQuadratic> all_;
   std::vector<Index> free_;
 };
 
-// A triangle of the mesh, on a piece.
+// A triangle of the mesh. It is part of a piece, by splits in four, of its root patch. Where the piece's quadratic is
+// coarse the triangle is the whole piece, the error is of that, and it is split in four or not at all.
 struct Facet {
-  std::array<TriangleParameter, 3> at;
-  Index piece;
+  // Instead of a quadratic: not known yet; coarse; and thick, too.
+  static constexpr Index unknown = UINT32_MAX, coarse = UINT32_MAX - 1, thick = UINT32_MAX - 2;
+  Index patch;
+  Index quadratic = unknown;
   double error = INFINITY;  // upper bound of its distance from the surface, either way
 
-  // Corner k, or the middle of the side that begins at corner k - 3.
-  [[nodiscard]] TriangleParameter point(std::size_t k) const {
-    if (k < 3) return at[k];
-    const TriangleParameter a = at[k - 3], b = at[(k - 2) % 3];
-    return {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
-  }
+  [[nodiscard]] bool is_coarse() const { return quadratic == coarse || quadratic == thick; }
 };
+
+// Corners of a triangle, and then middles of the sides that begin there.
+using FacetPlaces = std::array<TriangleParameter, 6>;
+
+// Of a whole piece, from its corners.
+PiecePath path_of(const FacetPlaces& at) {
+  const double along = at[1].u - at[0].u;
+  const bool turned = along < 0;
+  const int level = -std::ilogb(along);
+  const auto place = [&](double parameter) {
+    return static_cast<std::uint64_t>(std::ldexp(parameter, level)) - (turned ? 1 : 0);
+  };
+  return {static_cast<unsigned>(level), turned, place(at[0].u), place(at[0].v)};
+}
 
 // The limits of a run, in scaled units.
 struct Limits {
@@ -97,8 +97,9 @@ struct Limits {
   std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
   double min_cosine = -2;          // of normals; -2 for none
   Point3 eye;
-  double slope = INFINITY;   // of a triangle's tolerance over its distance from the eye
-  double shortest_turn = 0;  // triangles without a longer side are not split for their normals
+  double slope = INFINITY;    // of a triangle's tolerance over its distance from the eye
+  double shortest_turn = 0;   // triangles without a longer side are not split for their normals
+  bool whole_errors = false;  // also those above the tolerance
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
@@ -162,7 +163,7 @@ class MeshRefinement {
         limits_(limits),
         run_(run),
         complex_(surface),
-        vertices_(complex_.vertex_count()) {}
+        written_(complex_.vertex_count()) {}
 
   // Refines until all limits hold; false if that would take more than `most` triangles.
   bool run(std::uint64_t most);
@@ -175,20 +176,21 @@ class MeshRefinement {
   [[nodiscard]] Tessellation take_result(std::vector<double>* errors = nullptr);
 
  private:
-  struct Cut {
-    Index triangle, first_new, first_edge;
-    Index first_piece;  // the children of a coarse one
+  using Cut = TriangleComplex::Cut;
+  // Where a vertex is evaluated.
+  struct OnPatch {
+    Index patch = UINT32_MAX;
+    TriangleParameter at;
   };
 
   void place_roots();
-  void evaluate(std::size_t begin, std::size_t end);
-  void examine(const std::vector<Index>& triangles, bool mark);
-  void examine(Worker& worker, Index t, bool mark);
-  void make_room_for_quadratics(const std::vector<Index>& triangles);
-  void prove(Worker& worker, Index t, bool mark);
+  void evaluate(std::size_t first, std::span<const OnPatch> places);
+  void examine(std::span<const Index> triangles, bool mark);
+  void examine_batch(std::span<const Index> triangles, bool mark);
+  void prove(Index t, bool mark);
   [[nodiscard]] double seen_tolerance(Index t) const;
   [[nodiscard]] static double thickness(const Patch& patch, const BoundingPoints& hull);
-  void learn(Worker& worker, Index t);
+  void learn(Worker& worker, Index t, Index room);
   void mark_bent(Index t, const Flatness& flatness);
   void mark_long(Worker& worker, Index t);
   void mark_turning(Worker& worker, Index t);
@@ -196,54 +198,53 @@ class MeshRefinement {
   void mark_rest_of_coarse();
   [[nodiscard]] std::uint64_t count_after() const;
   void split(std::vector<Index>& parts);
-  std::vector<Cut> plan_cuts();
   void carry_out(const Cut& cut);
   [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
   [[nodiscard]] FlatTriangle flat(Index t) const;
-  [[nodiscard]] const Tile& piece_of(std::size_t t) const { return pieces_[facets_[t].piece]; }
-  [[nodiscard]] Tile& piece_of(std::size_t t) { return pieces_[facets_[t].piece]; }
+  [[nodiscard]] FacetPlaces places(Index t) const;
   [[nodiscard]] double tolerance(Index t) const {
     if (limits_.slope < INFINITY) return std::min(limits_.tolerance, seen_tolerance(t));
     if (limits_.of_owner.empty()) return limits_.tolerance;
-    return limits_.of_owner[surface_.place(PatchId(piece_of(t).patch)).owner];
+    return limits_.of_owner[surface_.place(PatchId(facets_[t].patch)).owner];
   }
   [[nodiscard]] PowerOfTwo back() const { return surface_.scale().inverse(); }
-  [[nodiscard]] Point3 scaled(Index v) const { return surface_.scale().apply(vertices_[v].written); }
-  void finish(Vertex& vertex, const BoundedPoint& point) const;
+  [[nodiscard]] Point3 scaled(Index v) const { return surface_.scale().apply(written_[v]); }
+  double finish(Index v, const BoundedPoint& point);
   void refuse_if_stuck() const;
-  void add_normals(Tessellation& result, const std::vector<Index>& order) const;
+  void add_normals(Tessellation& result, const std::vector<Index>& patches) const;
 
   const LimitSurface& surface_;
   const TessellateOptions& options_;
   Limits limits_;
   Run run_;
   TriangleComplex complex_;
-  std::vector<Vertex> vertices_;
-  std::deque<Facet> facets_;  // without room to spare, which would be most of the memory
-  std::vector<Tile> pieces_;
+  Blocks<Point3> written_;        // of vertices, in mesh units
+  Blocks<TriangleParameter> at_;  // of sites
+  double vertex_error_ = 0;       // largest of |written - limit point|, a coordinate, in scaled units
+  Blocks<Facet> facets_;
   Quadratics quadratics_;
   std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
-  bool errors_whole_ = false;  // also those above the tolerance
   std::atomic<bool> stuck_{false};
 };
 
 void MeshRefinement::place_roots() {
   const std::vector<PatchId>& roots = complex_.root_patches();
   constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
-  pieces_.reserve(roots.size());
+  std::vector<OnPatch> places(complex_.vertex_count());
+  facets_.resize(roots.size());
   for (std::size_t t = 0; t < roots.size(); ++t) {
-    facets_.push_back({corners, static_cast<Index>(t)});
-    pieces_.push_back({{}, roots[t].value()});
+    facets_[t].patch = roots[t].value();
     for (std::size_t k = 0; k < 3; ++k) {
-      Vertex& vertex = vertices_[complex_.corners(t)[k]];
-      if (vertex.patch == UINT32_MAX) vertex = {{}, corners[k], 0, roots[t].value()};
+      at_.push_back(corners[k]);
+      OnPatch& place = places[complex_.corner(t, k)];
+      if (place.patch == UINT32_MAX) place = {roots[t].value(), corners[k]};
     }
   }
-  evaluate(0, vertices_.size());
+  evaluate(0, places);
 }
 
 // The number that is written, and its error.
-void MeshRefinement::finish(Vertex& vertex, const BoundedPoint& point) const {
+double MeshRefinement::finish(Index v, const BoundedPoint& point) {
   Point3 written = back().apply(point.position);
   if (options_.single_precision) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -256,39 +257,61 @@ void MeshRefinement::finish(Vertex& vertex, const BoundedPoint& point) const {
       written[a] = static_cast<double>(rounded);
     }
   }
-  vertex.written = require_representable(written);
+  written_[v] = require_representable(written);
   const Vector3 moved = surface_.scale().apply(written) - point.position;
-  vertex.error = enlarged(point.error + max_abs(moved));
+  return enlarged(point.error + max_abs(moved));
 }
 
-void MeshRefinement::evaluate(std::size_t begin, std::size_t end) {
+// Vertices from `first` on; those without a patch have no triangles.
+void MeshRefinement::evaluate(std::size_t first, std::span<const OnPatch> places) {
+  std::atomic<double> largest{vertex_error_};
   parallel_for_with(
-      end - begin, run_.threads, [&] { return Worker(surface_); },
-      [&](Worker& worker, std::size_t from, std::size_t to) {
+      places.size(), run_.threads, [&] { return Worker(surface_); },
+      [&](Worker& worker, std::size_t begin, std::size_t end) {
         monitor_of(run_).checkpoint();
-        for (std::size_t i = begin + from; i < begin + to;) {
-          if (vertices_[i].patch == UINT32_MAX) {
+        double most = 0;
+        for (std::size_t i = begin; i < end;) {
+          const Index patch = places[i].patch;
+          if (patch == UINT32_MAX) {
             ++i;
             continue;
           }
-          const Index patch = vertices_[i].patch;
           std::size_t count = 0;
-          while (i + count < begin + to && count < worker.at.size() &&
-                 vertices_[i + count].patch != UINT32_MAX &&
-                 worker.same_quad(patch, vertices_[i + count].patch)) {
-            const Vertex& vertex = vertices_[i + count];
-            worker.at[count++] = place_of(surface_, PatchId(vertex.patch), vertex.at);
+          while (i + count < end && count < worker.at.size() && places[i + count].patch != UINT32_MAX &&
+                 worker.same_quad(patch, places[i + count].patch)) {
+            const OnPatch& place = places[i + count];
+            worker.at[count++] = place_of(surface_, PatchId(place.patch), place.at);
           }
           worker.evaluator(patch).points({worker.at.data(), count}, {worker.points.data(), count});
-          for (std::size_t k = 0; k < count; ++k) finish(vertices_[i + k], worker.points[k]);
+          for (std::size_t k = 0; k < count; ++k) {
+            most = std::max(most, finish(static_cast<Index>(first + i + k), worker.points[k]));
+          }
           i += count;
         }
+        for (double known = largest; known < most && !largest.compare_exchange_weak(known, most);) {
+        }
       });
+  vertex_error_ = largest;
+}
+
+FacetPlaces MeshRefinement::places(Index t) const {
+  FacetPlaces at;
+  for (std::size_t k = 0; k < 3; ++k) at[k] = at_[complex_.sites(t)[k]];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const TriangleParameter a = at[k], b = at[(k + 1) % 3];
+    at[3 + k] = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
+  }
+  return at;
 }
 
 FlatTriangle MeshRefinement::flat(Index t) const {
-  const std::array<Index, 3>& corners = complex_.corners(t);
-  return {{scaled(corners[0]), scaled(corners[1]), scaled(corners[2])}, facets_[t].at};
+  FlatTriangle triangle;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index site = complex_.sites(t)[k];
+    triangle.corner[k] = scaled(complex_.vertex_at(site));
+    triangle.at[k] = at_[site];
+  }
+  return triangle;
 }
 
 void MeshRefinement::mark_sides(Index t) {
@@ -313,28 +336,33 @@ double MeshRefinement::thickness(const Patch& patch, const BoundingPoints& hull)
   return longest;
 }
 
-// Finds the quadratic of a piece that is still one triangle; where it is coarse, the triangle's error.
-void MeshRefinement::learn(Worker& worker, Index t) {
-  Tile& piece = piece_of(t);
-  const Patch& patch = worker.patch(piece.patch, piece.path);
+// Finds the quadratic of a piece that is still one triangle, for which there is room; where it is coarse, the triangle's error.
+void MeshRefinement::learn(Worker& worker, Index t, Index room) {
+  Facet& facet = facets_[t];
+  const PiecePath path = path_of(places(t));
+  const Patch& patch = worker.patch(facet.patch, path);
   BoundsCache& library = surface_.library();
-  if (patch.kind->cacheable() || limits_.max_thickness < INFINITY)
+  if (limits_.max_thickness < INFINITY) {
     bounding_points(library, patch, worker.hull);
+  } else if (patch.kind->cacheable()) {
+    bounding_points(library.rows(*patch.kind), patch, worker.hull);
+  }
   const double most = tolerable_share * tolerance(t);
-  const bool whole = errors_whole_ || !(most < INFINITY) || piece.path.level() >= deepest_level;
+  const bool whole = limits_.whole_errors || !(most < INFINITY) || path.level() >= deepest_level;
   const ErrorUse use =
       whole ? ErrorUse{} : ErrorUse{.sufficient = sufficient_share * tolerance(t), .useless = most};
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull, use);
-  piece.known = true;
-  if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
-  piece.coarse = piece.thick || !(near.error <= most) || !(near.error < INFINITY);
-  if (!piece.coarse) {
-    quadratics_[piece.quadratic] = PieceQuadratic(near, piece.path);
+  const bool thick =
+      limits_.max_thickness < INFINITY && thickness(patch, worker.hull) > limits_.max_thickness;
+  if (!thick && near.error <= most && near.error < INFINITY) {
+    facet.quadratic = room;
+    quadratics_[room] = PieceQuadratic(near, path);
     return;
   }
+  facet.quadratic = thick ? Facet::thick : Facet::coarse;
   const FlatTriangle triangle = flat(t);
-  double& error = facets_[t].error;
-  error = near.error < INFINITY ? PieceQuadratic(near, piece.path).flatness(triangle).error : INFINITY;
+  double& error = facet.error;
+  error = near.error < INFINITY ? PieceQuadratic(near, path).flatness(triangle).error : INFINITY;
   // Where the quadratic itself is too far away there is nothing to be gained.
   if (error > tolerance(t) && !(error - 2 * near.error > tolerance(t))) {
     const ErrorUse use_here = whole ? ErrorUse{} : ErrorUse{.useless = tolerance(t)};
@@ -342,27 +370,27 @@ void MeshRefinement::learn(Worker& worker, Index t) {
   }
 }
 
-void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
-  Tile& piece = piece_of(t);
-  if (!piece.known) learn(worker, t);
-  if (!piece.coarse) {
-    const Flatness flatness = quadratics_[piece.quadratic].flatness(flat(t));
-    facets_[t].error = flatness.error;
+void MeshRefinement::prove(Index t, bool mark) {
+  Facet& facet = facets_[t];
+  if (!facet.is_coarse()) {
+    const Flatness flatness = quadratics_[facet.quadratic].flatness(flat(t));
+    facet.error = flatness.error;
     if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
-  } else if (mark && (piece.thick || facets_[t].error > tolerance(t))) {
-    if (piece.path.level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
+  } else if (mark && (facet.quadratic == Facet::thick || facet.error > tolerance(t))) {
+    if (path_of(places(t)).level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
     mark_sides(t);
   }
 }
 
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
 void MeshRefinement::mark_bent(Index t, const Flatness& flatness) {
-  const double taken = quadratics_[piece_of(t).quadratic].error() + flatness.corner_gap,
+  const double taken = quadratics_[facets_[t].quadratic].error() + flatness.corner_gap,
                left = std::max(tolerance(t) - taken, tolerance(t) / 4);
   std::array<double, 3> bow_sq;
   for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
   const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
-  const TriangleParameter a = facets_[t].at[most], b = facets_[t].at[(most + 1) % 3];
+  const FacetPlaces at = places(t);
+  const TriangleParameter a = at[most], b = at[(most + 1) % 3];
   if (std::max(std::fabs(a.u - b.u), std::fabs(a.v - b.v)) <= shortest_side) {
     return stuck_.store(true, std::memory_order_relaxed);
   }
@@ -384,10 +412,11 @@ void MeshRefinement::mark_long(Worker& worker, Index t) {
 }
 
 void MeshRefinement::mark_turning(Worker& worker, Index t) {
-  const Index patch = piece_of(t).patch;
+  const Index patch = facets_[t].patch;
+  const FacetPlaces at = places(t);
   std::array<std::optional<Vector3>, 3> normal;
   for (std::size_t k = 0; k < 3; ++k) {
-    normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), facets_[t].at[k])).normal;
+    normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), at[k])).normal;
   }
   const std::array<Point3, 3> corner = flat(t).corner;
   bool turns = false;
@@ -403,35 +432,33 @@ void MeshRefinement::mark_turning(Worker& worker, Index t) {
   if (turns && side[longest] > limits_.shortest_turn) complex_.mark(complex_.edge_of(t, longest));
 }
 
-void MeshRefinement::examine(Worker& worker, Index t, bool mark) {
-  prove(worker, t, mark);
-  if (mark) mark_long(worker, t);
+void MeshRefinement::examine(std::span<const Index> triangles, bool mark) {
+  for (std::size_t begin = 0; begin < triangles.size(); begin += batch_size) {
+    examine_batch(triangles.subspan(begin, std::min(batch_size, triangles.size() - begin)), mark);
+  }
+  refuse_if_stuck();
 }
 
-void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
-  make_room_for_quadratics(triangles);
+void MeshRefinement::examine_batch(std::span<const Index> triangles, bool mark) {
+  std::vector<Index> rooms(triangles.size(), Facet::unknown);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (facets_[triangles[i]].quadratic == Facet::unknown) rooms[i] = quadratics_.add();
+  }
   parallel_for_with(
       triangles.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (i % 256 == 0) monitor_of(run_).checkpoint();
-          examine(worker, triangles[i], mark);
+          const Index t = triangles[i];
+          if (rooms[i] != Facet::unknown) learn(worker, t, rooms[i]);
+          prove(t, mark);
+          if (mark) mark_long(worker, t);
         }
       });
-  refuse_if_stuck();
-  for (const Index t : triangles) {
-    Tile& piece = piece_of(t);
-    if (!piece.coarse) continue;
-    coarse_.push_back(t);
-    if (piece.quadratic != UINT32_MAX) quadratics_.drop(std::exchange(piece.quadratic, UINT32_MAX));
-  }
-}
-
-// For pieces that are not known yet, each of which may turn out to have one.
-void MeshRefinement::make_room_for_quadratics(const std::vector<Index>& triangles) {
-  for (const Index t : triangles) {
-    Tile& piece = piece_of(t);
-    if (!piece.known && piece.quadratic == UINT32_MAX) piece.quadratic = quadratics_.add();
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!facets_[triangles[i]].is_coarse()) continue;
+    coarse_.push_back(triangles[i]);
+    if (rooms[i] != Facet::unknown) quadratics_.drop(rooms[i]);
   }
 }
 
@@ -455,21 +482,18 @@ std::uint64_t MeshRefinement::count_after() const {
 
 // Which way to cut: lines inside that are less bent, and where none is bent shorter ones.
 std::size_t MeshRefinement::choose(Index t, unsigned marks) const {
-  const Tile& piece = piece_of(t);
+  const Facet& facet = facets_[t];
   const std::size_t choices = split_count(marks);
-  if (piece.coarse || choices == 1) return 0;
-  std::array<TriangleParameter, 6> at;
+  if (facet.is_coarse() || choices == 1) return 0;
+  const FacetPlaces at = places(t);
   std::array<Point3, 6> point;
   for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = facets_[t].point(k);
-    at[3 + k] = facets_[t].point(3 + k);
-    point[k] = scaled(complex_.corners(t)[k]);
-    const TriangleComplex::Edge& edge = complex_.edge(complex_.edge_of(t, k));
-    if (edge.halves != TriangleComplex::none) point[3 + k] = scaled(complex_.edge(edge.halves).to);
+    point[k] = scaled(complex_.corner(t, k));
+    if ((marks >> k) % 2 == 1) point[3 + k] = scaled(complex_.middle(t, k));
   }
   const double slight = limits_.tolerance < INFINITY ? limits_.tolerance / 4 : 0;
   const auto bend = [&](std::size_t p, std::size_t q) {
-    return std::max(slight, length(quadratics_[piece.quadratic].bow(at[p], at[q])));
+    return std::max(slight, length(quadratics_[facet.quadratic].bow(at[p], at[q])));
   };
   const auto size = [&](std::size_t p, std::size_t q) { return length_sq(point[p] - point[q]); };
   if (choices == 2) {
@@ -492,51 +516,30 @@ std::size_t MeshRefinement::choose(Index t, unsigned marks) const {
   return best;
 }
 
-std::vector<MeshRefinement::Cut> MeshRefinement::plan_cuts() {
-  std::vector<Cut> cuts;
-  const std::size_t old = triangle_count();
-  std::size_t triangles = 0, edges = 0, pieces = pieces_.size();
-  for (Index t = 0; t < old; ++t) {
-    const std::size_t marks = number_of_bits[complex_.marks(t)];
-    if (marks == 0) continue;
-    const bool coarse = piece_of(t).coarse;
-    cuts.push_back({t, static_cast<Index>(old + triangles), static_cast<Index>(complex_.edge_count() + edges),
-                    static_cast<Index>(pieces)});
-    triangles += marks;
-    edges += marks;
-    pieces += coarse ? 4 : 0;
-  }
-  complex_.extend(triangles, edges);
-  facets_.resize(old + triangles);
-  pieces_.resize(pieces);
-  return cuts;
-}
-
 void MeshRefinement::carry_out(const Cut& cut) {
   const unsigned marks = complex_.marks(cut.triangle);
-  SNUG_EXPECT(marks == 7 || !piece_of(cut.triangle).coarse);
-  const TriangleSplit shape = split_of(marks, choose(cut.triangle, marks));
-  complex_.cut(cut.triangle, shape, cut.first_new, cut.first_edge);
   const Facet whole = facets_[cut.triangle];
-  const Tile& parent = pieces_[whole.piece];
+  SNUG_EXPECT(marks == 7 || !whole.is_coarse());
+  const TriangleSplit shape = split_of(marks, choose(cut.triangle, marks));
+  complex_.cut(cut, shape);
   for (unsigned i = 0; i < shape.count; ++i) {
-    const Index t = i == 0 ? cut.triangle : cut.first_new + i - 1;
-    const auto& [p, q, r] = shape.triangles[i];
-    facets_[t] = {{whole.point(p), whole.point(q), whole.point(r)}, whole.piece};
-    if (!parent.coarse) continue;
-    facets_[t].piece = cut.first_piece + i;
-    piece_of(t) = {parent.path.child(i), parent.patch};
+    Facet& part = facets_[i == 0 ? cut.triangle : cut.first_new + i - 1];
+    part = {whole.patch, whole.is_coarse() ? Facet::unknown : whole.quadratic};
   }
 }
 
 // Splits what is marked; the parts, whose sides have no marks.
 void MeshRefinement::split(std::vector<Index>& parts) {
-  const std::size_t old = vertices_.size();
-  complex_.number_middles([&](std::size_t t, std::size_t k) {
-    vertices_.push_back({{}, facets_[t].point(3 + k), 0, piece_of(t).patch});
+  const std::size_t old = written_.size();
+  std::vector<OnPatch> places;
+  const std::vector<Cut> cuts = complex_.split_edges([&](std::size_t t, std::size_t k) {
+    at_.push_back(this->places(static_cast<Index>(t))[3 + k]);
+    if (old + places.size() < complex_.vertex_count())
+      places.push_back({facets_[t].patch, at_[at_.size() - 1]});
   });
-  evaluate(old, vertices_.size());
-  const std::vector<Cut> cuts = plan_cuts();
+  written_.resize(complex_.vertex_count());
+  facets_.resize(triangle_count());
+  evaluate(old, places);
   parallel_for(cuts.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) carry_out(cuts[i]);
   });
@@ -547,7 +550,7 @@ void MeshRefinement::split(std::vector<Index>& parts) {
     for (std::size_t t = cuts[i].first_new; t < end; ++t) parts.push_back(static_cast<Index>(t));
   }
   complex_.clear_marks();
-  std::erase_if(coarse_, [&](Index t) { return !piece_of(t).coarse; });
+  std::erase_if(coarse_, [&](Index t) { return !facets_[t].is_coarse(); });
 }
 
 bool MeshRefinement::run(std::uint64_t most) {
@@ -579,12 +582,11 @@ bool MeshRefinement::run(std::uint64_t most) {
 }
 
 void MeshRefinement::find_errors() {
-  errors_whole_ = true;
+  limits_.whole_errors = true;
   std::vector<Index> unknown;
   for (Index t = 0; t < triangle_count(); ++t) {
-    Tile& piece = piece_of(t);
-    if (facets_[t].error < INFINITY || !piece.coarse) continue;
-    piece.known = false;
+    if (facets_[t].error < INFINITY || !facets_[t].is_coarse()) continue;
+    facets_[t].quadratic = Facet::unknown;
     unknown.push_back(t);
   }
   examine(unknown, false);
@@ -592,15 +594,17 @@ void MeshRefinement::find_errors() {
 
 double MeshRefinement::error_bound() const {
   double largest = 0;
-  for (const Facet& facet : facets_) largest = std::max(largest, facet.error);
+  for (std::size_t t = 0; t < facets_.size(); ++t) largest = std::max(largest, facets_[t].error);
   return unscaled_up(largest, back());
 }
 
 void MeshRefinement::refuse_if_stuck() const {
   if (!stuck_.load()) return;
   double largest = 0;
-  for (const Facet& facet : facets_) {
-    if (pieces_[facet.piece].path.level() >= deepest_level) largest = std::max(largest, facet.error);
+  for (Index t = 0; t < facets_.size(); ++t) {
+    const Facet& facet = facets_[t];
+    const PiecePath path = facet.is_coarse() ? path_of(places(t)) : quadratics_[facet.quadratic].path();
+    if (path.level() >= deepest_level) largest = std::max(largest, facet.error);
   }
   char text[160];
   std::snprintf(
@@ -609,14 +613,14 @@ void MeshRefinement::refuse_if_stuck() const {
   refuse_value(text);
 }
 
-void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>& order) const {
-  result.normals.resize(order.size());
+void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>& patches) const {
+  result.normals.resize(patches.size());
   parallel_for_with(
-      order.size(), run_.threads, [&] { return Worker(surface_); },
+      patches.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
         monitor_of(run_).checkpoint();
         for (std::size_t i = begin; i < end; ++i) {
-          const LimitFrame frame = worker.evaluator(vertices_[order[i]].patch).frame(result.parameters[i]);
+          const LimitFrame frame = worker.evaluator(patches[i]).frame(result.parameters[i]);
           result.normals[i] = frame.normal.value_or(Vector3{});
         }
       });
@@ -626,53 +630,59 @@ void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>&
 Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
   Tessellation result;
   result.error_bound = error_bound();
+  result.position_error = unscaled_up(vertex_error_, back());
   const std::size_t count = triangle_count();
-  std::vector<Index> patches(pieces_.size());
-  for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = pieces_[i].patch;
-  pieces_ = std::vector<Tile>();
   quadratics_ = {};
-  std::vector<std::array<Index, 3>> corners = complex_.take_corners();
+  Blocks<std::array<Index, 3>> sites = complex_.take_sites();
   // Patch by patch.
   std::vector<std::size_t> begins(surface_.patch_count() + 1, 0);
-  for (const Facet& facet : facets_) ++begins[patches[facet.piece] + 1];
+  for (std::size_t t = 0; t < count; ++t) ++begins[facets_[t].patch + 1];
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
+  std::vector<Index> patch_of(complex_.site_count());
   result.triangles.resize(count);
   result.owners.resize(count);
   if (errors != nullptr) errors->resize(count);
   if (options_.corners) result.corners.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Facet& facet = facets_[t];
-    const PatchId patch(patches[facet.piece]);
+    const PatchId patch(facet.patch);
     const std::size_t place = begins[patch.value()]++;
-    result.triangles[place] = corners[t];
+    result.triangles[place] = sites[t];
     result.owners[place] = surface_.place(patch).owner;
     if (errors != nullptr) (*errors)[place] = unscaled_up(facet.error, back());
-    if (!options_.corners) continue;
-    for (std::size_t k = 0; k < 3; ++k) result.corners[place][k] = place_of(surface_, patch, facet.at[k]);
-  }
-  facets_ = {};
-  corners = std::vector<std::array<Index, 3>>();
-  // Vertices in the order in which triangles name them.
-  std::vector<Index> number(vertices_.size(), UINT32_MAX), order;
-  order.reserve(vertices_.size());
-  result.positions.reserve(vertices_.size());
-  result.parameters.reserve(vertices_.size());
-  double position_error = 0;
-  for (std::array<Index, 3>& triangle : result.triangles) {
-    for (Index& v : triangle) {
-      if (number[v] == UINT32_MAX) {
-        number[v] = static_cast<Index>(order.size());
-        order.push_back(v);
-        const Vertex& vertex = vertices_[v];
-        result.positions.push_back(vertex.written);
-        result.parameters.push_back(place_of(surface_, PatchId(vertex.patch), vertex.at));
-        position_error = std::max(position_error, vertex.error);
-      }
-      v = number[v];
+    for (std::size_t k = 0; k < 3; ++k) {
+      patch_of[sites[t][k]] = patch.value();
+      if (options_.corners) result.corners[place][k] = place_of(surface_, patch, at_[sites[t][k]]);
     }
   }
-  result.position_error = unscaled_up(position_error, back());
-  if (options_.normals) add_normals(result, order);
+  facets_ = {};
+  sites = {};
+  // Vertices in the order in which triangles name them, with the parameters of their first sites.
+  std::vector<Index> first(complex_.vertex_count(), UINT32_MAX), number(first), patches;
+  std::size_t used = 0;
+  for (Index site = 0; site < complex_.site_count(); ++site) {
+    Index& known = first[complex_.vertex_at(site)];
+    if (known != UINT32_MAX) continue;
+    known = site;
+    ++used;
+  }
+  result.positions.reserve(used);
+  result.parameters.reserve(used);
+  if (options_.normals) patches.reserve(used);
+  for (std::array<Index, 3>& triangle : result.triangles) {
+    for (Index& site : triangle) {
+      const Index v = complex_.vertex_at(site);
+      if (number[v] == UINT32_MAX) {
+        number[v] = static_cast<Index>(result.positions.size());
+        const Index patch = patch_of[first[v]];
+        result.positions.push_back(written_[v]);
+        result.parameters.push_back(place_of(surface_, PatchId(patch), at_[first[v]]));
+        if (options_.normals) patches.push_back(patch);
+      }
+      site = number[v];
+    }
+  }
+  if (options_.normals) add_normals(result, patches);
   return result;
 }
 

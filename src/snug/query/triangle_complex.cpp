@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <tuple>
 #include <utility>
 
@@ -84,63 +85,63 @@ TriangleComplex::TriangleComplex(const LimitSurface& surface)
   }
   for (std::size_t e = 0; e < whole_.size(); ++e) {
     if (!in_halves[e] && !in_one[e]) continue;
-    const auto [from, middle, to] = ends_of(surface, EdgeId(e));
-    whole_[e] = add_edge(from, to);
+    whole_[e] = add_edge();
     if (!in_halves[e]) continue;
-    split_edge(whole_[e], middle);
-    if (in_one[e]) marks_[whole_[e]] = 1;
+    const Index first = add_edge(), second = add_edge();
+    states_[whole_[e]] = static_cast<Index>(splits_.size());
+    splits_.push_back({first, second, ends_of(surface, EdgeId(e))[1], none});
   }
   for (const PatchId p : root_patches_) {
     const std::array<std::uint32_t, 3> names = surface.corner_names(p);
     const std::array<PatchSide, 3> sides = sides_of(surface, p);
-    corners_.push_back(names);
-    Sides& numbers = sides_.emplace_back();
+    std::array<Index, 3> sites, numbers;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index from = names[k], to = names[(k + 1) % 3];
-      numbers.of[k] = 2 * edge_for(surface, sides[k], from, to) + (sides[k].reversed ? 1 : 0);
-      const Edge& edge = edges_[numbers.of[k] / 2];
-      SNUG_EXPECT((sides[k].reversed ? edge.to : edge.from) == from);
-      SNUG_EXPECT((sides[k].reversed ? edge.from : edge.to) == to);
+      sites[k] = add_site(names[k]);
+      numbers[k] = 4 * edge_for(sides[k]) + (sides[k].reversed ? 1 : 0);
     }
+    sites_.push_back(sites);
+    sides_.push_back(numbers);
   }
   whole_ = {};
   inside_ = {};
 }
 
-Index TriangleComplex::edge_for(const LimitSurface&, const PatchSide& side, Index from, Index to) {
+Index TriangleComplex::edge_for(const PatchSide& side) {
   switch (side.part) {
     case PatchSide::Part::whole:
       return whole_[side.number];
     case PatchSide::Part::first_half:
-      return edges_[whole_[side.number]].halves;
+      return splits_[states_[whole_[side.number]]].first;
     case PatchSide::Part::second_half:
-      return edges_[whole_[side.number]].halves + 1;
+      return splits_[states_[whole_[side.number]]].second;
     case PatchSide::Part::inside:
       break;
   }
   Index& known = inside_[side.number];
-  if (known == none) known = side.reversed ? add_edge(to, from) : add_edge(from, to);
+  if (known == none) known = add_edge();
   return known;
 }
 
-Index TriangleComplex::add_edge(Index from, Index to) {
-  SNUG_EXPECT(edges_.size() < none / 2);
-  edges_.push_back({from, to});
-  marks_.push_back(0);
-  return static_cast<Index>(edges_.size() - 1);
+Index TriangleComplex::add_edge() {
+  SNUG_EXPECT(states_.size() < none / 4);
+  states_.push_back(none);
+  return static_cast<Index>(states_.size() - 1);
 }
 
-void TriangleComplex::split_edge(Index e, Index middle) {
-  const Index first = add_edge(edges_[e].from, middle);
-  add_edge(middle, edges_[e].to);
-  edges_[e].halves = first;
+Index TriangleComplex::add_site(Index vertex) {
+  vertices_.push_back(vertex);
+  return static_cast<Index>(vertices_.size() - 1);
 }
 
 void TriangleComplex::mark(Index e) {
-  std::atomic_ref<std::uint8_t>(marks_[e]).store(1, std::memory_order_relaxed);
+  std::atomic_ref<Index> state(states_[e]);
+  if (state.load(std::memory_order_relaxed) == none) state.store(marked, std::memory_order_relaxed);
 }
 
-void TriangleComplex::clear_marks() { std::fill(marks_.begin(), marks_.end(), std::uint8_t{0}); }
+void TriangleComplex::clear_marks() {
+  for (std::size_t e = 0; e < states_.size(); ++e) states_[e] = none;
+  splits_ = {};
+}
 
 bool TriangleComplex::mark_what_is_not_simple() {
   bool any = false;
@@ -149,53 +150,72 @@ bool TriangleComplex::mark_what_is_not_simple() {
     any = true;
   };
   std::vector<Index> live;
-  std::vector<bool> used(edges_.size(), false);
+  std::vector<bool> used(states_.size(), false);
   std::vector<std::array<Index, 2>> ends;
   std::vector<std::array<Index, 3>> triples;
-  for (std::size_t t = 0; t < corners_.size(); ++t) {
+  for (std::size_t t = 0; t < triangle_count(); ++t) {
     triples.push_back({edge_of(t, 0), edge_of(t, 1), edge_of(t, 2)});
     std::sort(triples.back().begin(), triples.back().end());
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index e = edge_of(t, k);
+      const Index e = edge_of(t, k), from = corner(t, k), to = corner(t, (k + 1) % 3);
       if (used[e]) continue;
       used[e] = true;
       live.push_back(e);
-      ends.push_back({std::min(edges_[e].from, edges_[e].to), std::max(edges_[e].from, edges_[e].to)});
-      if (edges_[e].from == edges_[e].to) mark_edge(e);
+      ends.push_back({std::min(from, to), std::max(from, to)});
+      if (from == to) mark_edge(e);
     }
   }
   for_each_repeated(ends, vertex_count_, [&](Index i) { mark_edge(live[i]); });
-  for_each_repeated(triples, edges_.size(), [&](Index t) {
+  for_each_repeated(triples, states_.size(), [&](Index t) {
     for (std::size_t k = 0; k < 3; ++k) mark_edge(edge_of(t, k));
   });
   return any;
 }
 
+// The site of a marked side's middle for the next triangle on it. The first half takes the number of the edge.
+Index TriangleComplex::middle_site(Index side, bool& is_new) {
+  const Index e = side / 4;
+  if (states_[e] == marked) {
+    const Index second = add_edge();
+    states_[e] = static_cast<Index>(splits_.size());
+    splits_.push_back({e, second, static_cast<Index>(vertex_count_++), none});
+  }
+  Split& split = splits_[states_[e]];
+  if (split.site != none) return split.site;
+  is_new = true;
+  const Index site = add_site(split.vertex);
+  if (inside(side)) split.site = site;
+  return site;
+}
+
+void TriangleComplex::make_room(std::vector<Cut>& cuts) {
+  for (Cut& cut : cuts) cut.first_edge += static_cast<Index>(states_.size());
+  std::size_t parts = 0;
+  for (const Cut& cut : cuts) parts += static_cast<std::size_t>(std::popcount(marks(cut.triangle)));
+  const std::size_t edges = states_.size();
+  SNUG_EXPECT(edges + parts < none / 4);
+  states_.resize(edges + parts);
+  for (std::size_t e = edges; e < states_.size(); ++e) states_[e] = none;
+  sites_.resize(sites_.size() + parts);
+  sides_.resize(sides_.size() + parts);
+}
+
 // The first or second half of a side, along it.
 Index TriangleComplex::half(Index side, bool second) const {
+  const Split& split = splits_[states_[side / 4]];
   const bool reversed = side % 2 != 0;
-  return 2 * (edges_[side / 2].halves + (second != reversed ? 1u : 0u)) + (reversed ? 1u : 0u);
+  return 4 * (second != reversed ? split.second : split.first) + side % 4;
 }
 
-void TriangleComplex::extend(std::size_t triangles, std::size_t edges) {
-  SNUG_EXPECT(edges_.size() + edges < none / 2);
-  corners_.resize(corners_.size() + triangles);
-  sides_.resize(sides_.size() + triangles);
-  edges_.resize(edges_.size() + edges);
-  marks_.resize(marks_.size() + edges, 0);
+Blocks<std::array<TriangleComplex::Index, 3>> TriangleComplex::take_sites() {
+  states_ = {};
+  sides_ = {};
+  return std::move(sites_);
 }
 
-std::vector<std::array<TriangleComplex::Index, 3>> TriangleComplex::take_corners() {
-  edges_ = std::vector<Edge>();
-  marks_ = std::vector<std::uint8_t>();
-  sides_ = std::vector<Sides>();
-  return std::move(corners_);
-}
-
-void TriangleComplex::cut(std::size_t t, const TriangleSplit& split, std::size_t first_new,
-                          Index first_edge) {
-  const std::array<Index, 3> old = sides_[t].of, whole = corners_[t];
-  const auto vertex = [&](std::size_t local) { return local < 3 ? whole[local] : middle(old[local - 3]); };
+void TriangleComplex::cut(const Cut& cut, const TriangleSplit& split) {
+  const std::array<Index, 3> old = sides_[cut.triangle], whole = sites_[cut.triangle];
+  const auto site = [&](std::size_t local) { return local < 3 ? whole[local] : cut.middles[local - 3]; };
   std::array<std::array<std::uint8_t, 2>, 3> inner{};
   std::size_t inner_count = 0;
   const auto side_between = [&](std::uint8_t p, std::uint8_t q) -> Index {
@@ -205,18 +225,17 @@ void TriangleComplex::cut(std::size_t t, const TriangleSplit& split, std::size_t
     if (q < 3 && p == 3 + q) return half(old[q], false) ^ 1;
     if (q < 3 && p == 3 + (q + 2) % 3) return half(old[(q + 2) % 3], true);
     for (std::size_t i = 0; i < inner_count; ++i) {
-      if (inner[i][0] == q && inner[i][1] == p) return 2 * (first_edge + static_cast<Index>(i)) + 1;
+      if (inner[i][0] == q && inner[i][1] == p) return 4 * (cut.first_edge + static_cast<Index>(i)) + 3;
     }
     inner[inner_count] = {p, q};
-    edges_[first_edge + inner_count] = {vertex(p), vertex(q)};
-    return 2 * (first_edge + static_cast<Index>(inner_count++));
+    return 4 * (cut.first_edge + static_cast<Index>(inner_count++)) + 2;
   };
   for (std::size_t i = 0; i < split.count; ++i) {
-    const std::size_t number = i == 0 ? t : first_new + i - 1;
+    const std::size_t number = i == 0 ? cut.triangle : cut.first_new + i - 1;
     const Local& local = split.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      corners_[number][k] = vertex(local[k]);
-      sides_[number].of[k] = side_between(local[k], local[(k + 1) % 3]);
+      sites_[number][k] = site(local[k]);
+      sides_[number][k] = side_between(local[k], local[(k + 1) % 3]);
     }
   }
 }
