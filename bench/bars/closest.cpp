@@ -11,7 +11,7 @@
 
 #include "bars.h"
 #include "peers.h"
-#ifdef SNUG_BENCH_EMBREE
+#if defined(SNUG_BENCH_EMBREE) && defined(SNUG_BENCH_FCL)
 #include "peer_embree.h"
 #endif
 
@@ -64,7 +64,7 @@ void add_points(const Model& model, const char* where, const Goals& goals, Point
       return sum;
     });
   }
-#ifdef SNUG_BENCH_EMBREE
+#if defined(SNUG_BENCH_EMBREE) && defined(SNUG_BENCH_FCL)
   const EmbreeMesh mesh(uniform_mesh(model, collide_tolerance));
   group.add("Embree, mesh of 1 %", items, [&] {
     double sum = 0;
@@ -101,7 +101,7 @@ void closest_bars(const std::vector<ModelPair>& pairs, const Options& options, B
                table);
     add_points(*model, "near the surface", {0.8, 1.3}, queries, near_surface(surface, count), options, table);
   }
-#ifndef SNUG_BENCH_EMBREE
+#if !defined(SNUG_BENCH_EMBREE) || !defined(SNUG_BENCH_FCL)
   table.missing("closest point 0.1 %", "Embree 3 is not installed");
 #endif
 }
