@@ -30,7 +30,7 @@ std::vector<Question> questions(const TemporaryFolder& folder, const std::string
        "1000",
        "",
        false},
-      {{"collide", pawn, pawn, "--tolerance", "1e-13"}, "1000", "/stats/splits"},
+      {{"collide", pawn, pawn, "--tolerance", "1e-13"}, "10", "/stats/splits"},
       {{"collide", pawn, pawn, "--move-b", "0.1 0.3 0", "--all", "--error", "1e-9", "--tolerance", "1e-9"},
        "1000",
        ""},

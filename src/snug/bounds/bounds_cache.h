@@ -25,6 +25,7 @@ class BoundsCache {
   explicit BoundsCache(std::size_t max_bytes_of_rows = std::size_t{256} << 20)
       : rows_(max_bytes_of_rows),
         level_rows_(max_bytes_of_rows),
+        direct_rows_(max_bytes_of_rows),
         tip_tables_(max_bytes_of_rows),
         quadratics_(max_bytes_of_rows) {}
 

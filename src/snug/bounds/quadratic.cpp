@@ -119,7 +119,36 @@ void solve(std::array<std::array<double, 6>, 6> a, std::array<double, 6>& b) {
   }
 }
 
+// Least squares over the Bezier points of the children; the patch's own corners count as several.
+QuarterRows make_quarter_rows() {
+  QuarterRows rows{};
+  std::array<std::array<double, 6>, 6> gram{};
+  const auto weight = [](std::size_t child, std::size_t i) { return child == i ? corner_weight : 1.0; };
+  for (std::size_t child = 0; child < 4; ++child) {
+    const Restriction& to = rows.to_child[child] = restriction_to(child_of(whole_patch, child));
+    for (std::size_t k = 0; k < 6; ++k) {
+      for (std::size_t l = 0; l < 6; ++l) {
+        for (std::size_t i = 0; i < 6; ++i) gram[k][l] += weight(child, i) * to[i][k] * to[i][l];
+      }
+    }
+  }
+  for (std::size_t child = 0; child < 4; ++child) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      std::array<double, 6> column = rows.to_child[child][i];
+      for (double& entry : column) entry *= weight(child, i);
+      solve(gram, column);
+      for (std::size_t k = 0; k < 6; ++k) rows.from_child[child][k][i] = column[k];
+    }
+  }
+  return rows;
+}
+
 }  // namespace
+
+const QuarterRows& quarter_rows() {
+  static const QuarterRows rows = make_quarter_rows();
+  return rows;
+}
 
 std::size_t QuadraticRows::bytes() const {
   return (to_nets_.size() + to_level_nets_.size()) * sizeof(Restriction) +

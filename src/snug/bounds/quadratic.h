@@ -79,6 +79,14 @@ class QuadraticRows {
   bool lattice_ = false;  // limit points of the places are the parameters themselves, up to the error
 };
 
+/// Quadratics over the four children of a patch (split()), in the patch's order of corners.
+struct QuarterRows {
+  std::array<QuadraticRows::Restriction, 4> to_child;  ///< of a quadratic over the patch
+  std::array<QuadraticRows::Restriction, 4>
+      from_child;  ///< in sum the one that is nearest to four, Bezier point for Bezier point
+};
+[[nodiscard]] const QuarterRows& quarter_rows();
+
 /// Of a transient kind the lattice alone, and no fit.
 /// Requires:  a patch, no polygon, with has_quadratic_rows().
 /// Cost:      0.1 to 1 ms up to valence 12.

@@ -92,30 +92,57 @@ struct Flat {
   float centre[2], edges[3][2];
 };
 
-// Half the sum of the sides around boxes, seen in the plane of two axes after a turn; not exact.
-std::array<float, 2> sides_after(std::span<const Flat> boxes, float cosine, float sine) {
-  float lower[2] = {INFINITY, INFINITY}, upper[2] = {-INFINITY, -INFINITY};
+// Turns that axes are tried with: steps of a right angle. All at once, since vectors do so.
+constexpr std::size_t turn_count = 8;
+struct Turns {
+  std::array<float, turn_count> cosine, sine;
+};
+// What boxes take of two axes after each turn; not exact.
+struct Sides {
+  std::array<float, turn_count> first, second;
+};
+Sides sides_after(std::span<const Flat> boxes, const Turns& turns) {
+  std::array<float, turn_count> lower[2], upper[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    lower[i].fill(INFINITY);
+    upper[i].fill(-INFINITY);
+  }
   for (const Flat& box : boxes) {
-    const float centre[2] = {cosine * box.centre[0] + sine * box.centre[1],
-                             cosine * box.centre[1] - sine * box.centre[0]};
-    float reach[2] = {0, 0};
-    for (const auto& edge : box.edges) {
-      reach[0] += std::fabs(cosine * edge[0] + sine * edge[1]);
-      reach[1] += std::fabs(cosine * edge[1] - sine * edge[0]);
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      lower[i] = std::min(lower[i], centre[i] - reach[i]);
-      upper[i] = std::max(upper[i], centre[i] + reach[i]);
+    for (std::size_t t = 0; t < turn_count; ++t) {
+      const float c = turns.cosine[t], s = turns.sine[t];
+      float reach[2] = {0, 0};
+      for (const auto& edge : box.edges) {
+        reach[0] += std::fabs(c * edge[0] + s * edge[1]);
+        reach[1] += std::fabs(c * edge[1] - s * edge[0]);
+      }
+      const float centre[2] = {c * box.centre[0] + s * box.centre[1], c * box.centre[1] - s * box.centre[0]};
+      for (std::size_t i = 0; i < 2; ++i) {
+        lower[i][t] = std::min(lower[i][t], centre[i] - reach[i]);
+        upper[i][t] = std::max(upper[i][t], centre[i] + reach[i]);
+      }
     }
   }
-  return {upper[0] - lower[0], upper[1] - lower[1]};
+  Sides sides;
+  for (std::size_t t = 0; t < turn_count; ++t) {
+    sides.first[t] = upper[0][t] - lower[0][t];
+    sides.second[t] = upper[1][t] - lower[1][t];
+  }
+  return sides;
 }
 
 // Axes turned about the one of the least extent, then about that of the largest, so that a box around boxes
 // has less surface. Any axes will do, so single precision is enough, and so are some of many boxes.
 std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<const Obb> boxes) {
   constexpr std::size_t max_boxes = 64;
-  constexpr int steps = 8;  // a right angle
+  static const Turns turns = [] {
+    Turns made;
+    for (std::size_t t = 0; t < turn_count; ++t) {
+      const double angle = static_cast<double>(t) * std::numbers::pi / (2 * turn_count);
+      made.cosine[t] = static_cast<float>(std::cos(angle));
+      made.sine[t] = static_cast<float>(std::sin(angle));
+    }
+    return made;
+  }();
   const std::size_t stride = (boxes.size() + max_boxes - 1) / max_boxes;
   std::array<Flat, max_boxes> flat;
   std::array<float, 3> sides;
@@ -134,25 +161,23 @@ std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<cons
     }
     return std::span<const Flat>(flat.data(), count);
   };
-  sides[0] = sides_after(flatten(0, 1), 1, 0)[0];
-  const std::array<float, 2> others = sides_after(flatten(1, 2), 1, 0);
-  sides = {sides[0], others[0], others[1]};
+  // The first turn is none.
+  const Sides others = sides_after(flatten(1, 2), turns);
+  sides = {sides_after(flatten(0, 1), turns).first[0], others.first[0], others.second[0]};
   for (const bool least : {true, false}) {
     const auto about = static_cast<std::size_t>((least ? std::min_element(sides.begin(), sides.end())
                                                        : std::max_element(sides.begin(), sides.end())) -
                                                 sides.begin());
     const std::size_t i = (about + 1) % 3, j = (about + 2) % 3;
-    const std::span<const Flat> seen = flatten(i, j);
+    const Sides turned = sides_after(flatten(i, j), turns);
     float best = INFINITY;
     std::array<double, 2> turn{1, 0};
-    for (int step = 0; step < steps; ++step) {
-      const double angle = step * std::numbers::pi / (2 * steps), cosine = std::cos(angle),
-                   sine = std::sin(angle);
-      const auto [x, y] = sides_after(seen, static_cast<float>(cosine), static_cast<float>(sine));
-      const float area = x * y + (x + y) * sides[about];
+    for (std::size_t t = 0; t < turn_count; ++t) {
+      const float x = turned.first[t], y = turned.second[t], area = x * y + (x + y) * sides[about];
       if (!(area < best)) continue;
       best = area;
-      turn = {cosine, sine};
+      const double angle = static_cast<double>(t) * std::numbers::pi / (2 * turn_count);
+      turn = {std::cos(angle), std::sin(angle)};
       sides[i] = x;
       sides[j] = y;
     }

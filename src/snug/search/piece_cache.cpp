@@ -6,12 +6,10 @@ namespace snug {
 namespace {
 
 SplitNode split_node(const SurfaceBvh& model, const Patch& parent) {
-  thread_local Patch child;
+  thread_local std::array<Patch, 4> children;
+  for (unsigned i = 0; i < 4; ++i) split(parent, i, children[i]);
   std::array<PieceBuild, 4> pieces;
-  for (unsigned i = 0; i < 4; ++i) {
-    split(parent, i, child);
-    pieces[i] = build_piece(model.surface().library(), child, model.method());
-  }
+  build_pieces(model.surface().library(), children, model.method(), pieces);
   return SplitNode(pieces);
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include <snug/bounds/piece_fit.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
@@ -123,7 +125,16 @@ FittedSet fitted_set(const PieceBuild& piece) {
   return {piece.box, {c[0], c[1], c[2], m[0], m[1], m[2]}, error, normal, normal_error};
 }
 
-PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method) {
+namespace {
+
+PieceBuild built(const PieceFit& fit, const Patch& patch) {
+  std::array<Extent, 3> extents;
+  for (std::size_t k = 0; k < 3; ++k) extents[k] = {fit.lower[k], fit.upper[k]};
+  return {box_of(fit.axes, extents), fit.offset, fit.quadratic, can_split(patch, fit.offset)};
+}
+
+// Of a kind that fit_pieces() does not fit, and what it has no answer for.
+PieceBuild build_alone(BoundsCache& library, const Patch& patch, BoundMethod method) {
   thread_local BoundingPoints points;
   PieceBuild result;
   if (method == BoundMethod::table) {
@@ -137,6 +148,25 @@ PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod met
   }
   result.box = box_around(result.offset, points, method);
   result.can_split = can_split(patch, result.offset);
+  return result;
+}
+
+}  // namespace
+
+void build_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
+                  std::span<PieceBuild> out) {
+  thread_local std::vector<PieceFit> fits;
+  fits.resize(patches.size());
+  if (method == BoundMethod::rows) fit_pieces(library, patches, fits);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const bool fitted = method == BoundMethod::rows && fits[i].offset.radius >= 0;
+    out[i] = fitted ? built(fits[i], patches[i]) : build_alone(library, patches[i], method);
+  }
+}
+
+PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method) {
+  PieceBuild result;
+  build_pieces(library, {&patch, 1}, method, {&result, 1});
   return result;
 }
 

@@ -89,6 +89,10 @@ struct PieceBuild {
   bool can_split;
 };
 [[nodiscard]] PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method);
+/// Many at once, which takes a small part of the time where kinds come again: see fit_pieces(). A piece does not depend on the
+/// others.
+void build_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
+                  std::span<PieceBuild> out);
 
 /// The piece, for boxes above its own.
 [[nodiscard]] FittedSet fitted_set(const PieceBuild& piece);

@@ -13,6 +13,9 @@
 namespace snug {
 namespace {
 
+// Patches of a tight tree that are fitted together.
+constexpr std::size_t block = 256;
+
 std::vector<PatchId> existing_patches(const LimitSurface& surface) {
   std::vector<PatchId> patches;
   patches.reserve(surface.patch_count());
@@ -33,13 +36,12 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
 }  // namespace
 
 std::span<const PieceBuild> SurfaceBvh::piece_builds(std::span<const std::uint32_t> items) const {
+  thread_local std::array<Patch, WideBvh::leaf_size> members;
   thread_local std::array<PieceBuild, WideBvh::leaf_size> pieces;
-  thread_local Patch patch;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    surface_->patch(patches_[items[i]], patch);
-    pieces[i] = build_piece(surface_->library(), patch, options_.method);
-  }
-  return std::span(pieces).first(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) surface_->patch(patches_[items[i]], members[i]);
+  const std::span<PieceBuild> result = std::span(pieces).first(items.size());
+  build_pieces(surface_->library(), std::span(members).first(items.size()), options_.method, result);
+  return result;
 }
 
 const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const {
@@ -122,13 +124,16 @@ WideBvh SurfaceBvh::make_tree(const WorkMonitor& monitor) {
 WideBvh SurfaceBvh::make_tight_tree(const WorkMonitor& monitor) {
   std::vector<PieceBuild> pieces(patches_.size());
   std::vector<FittedSet> sets(patches_.size());
-  parallel_for(patches_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
-    Patch patch;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i % 64 == 0) monitor.checkpoint();
-      surface_->patch(patches_[i], patch);
-      pieces[i] = build_piece(surface_->library(), patch, options_.method);
-      sets[i] = fitted_set(pieces[i]);
+  const std::size_t blocks = (patches_.size() + block - 1) / block;
+  parallel_for(blocks, options_.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<Patch> members(block);
+    for (std::size_t b = begin; b < end; ++b) {
+      monitor.checkpoint();
+      const std::size_t first = b * block, here = std::min(block, patches_.size() - first);
+      for (std::size_t i = 0; i < here; ++i) surface_->patch(patches_[first + i], members[i]);
+      build_pieces(surface_->library(), std::span(members).first(here), options_.method,
+                   std::span(pieces).subspan(first, here));
+      for (std::size_t i = first; i < first + here; ++i) sets[i] = fitted_set(pieces[i]);
     }
   });
   WideBvh tree(sets, monitor);

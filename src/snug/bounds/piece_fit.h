@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include <snug/bounds/bounds_cache.h>
+#include <snug/bounds/quadratic.h>
+#include <snug/patch/patch.h>
+
+namespace snug {
+
+/// All that a leaf keeps of a patch: an offset triangle, a quadratic with its errors, and how far the patch reaches along three
+/// axes, those of its base triangle.
+struct PieceFit {
+  OffsetTriangle offset;  ///< a negative radius: no answer, ask offset_triangle() and quadratic_triangle()
+  QuadraticTriangle quadratic;
+  std::array<Vector3, 3> axes;  ///< orthonormal up to a few roundings
+  /// Bounds of dot(axes[k], x) over the patch.
+  std::array<double, 3> lower, upper;
+};
+
+/// Fits many patches at once. Each is split, and its parts, which are of few kinds whatever the patches are, are bounded in
+/// vectors, those of a kind together. Parts at extraordinary corners are refined as long as their error exceeds that of the rest.
+///
+/// Guarantee: offsets as offset_triangle(), quadratics as quadratic_triangle(). A patch's answer does not depend on the others.
+///            None for planes, needles, what is not finite, and patches of which a part is of a kind that passes or has no layout.
+/// Requires:  out.size() == patches.size().
+/// Source:    derivations/quadratics.md, "Many patches at once".
+void fit_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out);
+
+}  // namespace snug
