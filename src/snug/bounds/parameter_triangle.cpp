@@ -58,7 +58,7 @@ QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t de
 // The mean of the polar form over all pairs of different arguments in one direction, and such pairs in the other.
 QuadraticWeights raised_quadratic(const ParameterTriangle& corners, std::size_t i, std::size_t j) {
   SNUG_EXPECT(i <= 3 && j <= 3);
-  const auto& [origin, across, along] = corners;
+  const Weights &origin = corners[0], &across = corners[1], &along = corners[2];
   const auto corner = [&](std::size_t a, std::size_t b) {
     Weights at = origin;
     for (std::size_t k = 0; k < 3; ++k) {

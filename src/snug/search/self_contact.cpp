@@ -6,6 +6,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/feet.h>
+#include <snug/search/piece.h>
 #include <support/direction.h>
 #include <support/parallel.h>
 
