@@ -51,8 +51,9 @@ TEST_F(advice, of_collide_is_a_tolerance_where_parts_touch) {
 }
 
 TEST_F(advice, of_collide_is_a_budget_where_that_ended) {
-  const Words words{
-      "collide", model("bracket.obj"), model("pin.obj"), "--move-b", "0.05 0.05 0.5", "--max-splits", "2"};
+  const Words words{"collide",  model("bracket.obj"), model("pin.obj"),
+                    "--move-b", "0.05 0.05 0.5",      "--tolerance",
+                    "1e-6",     "--max-splits",       "1"};
   const Outcome ended = run_snug(words);
   ASSERT_EQ(ended.status, 5) << ended.out;
   EXPECT_NE(ended.out.find("give a larger --max-splits"), std::string::npos) << ended.out;
