@@ -599,8 +599,13 @@ CountedImage render_counted(const PictureScene& scene, const Camera& camera, con
   const auto finish_row = [&] {
     const std::lock_guard lock(mutex);
     ++done;
-    if (failure == nullptr && options.progress)
+    if (failure != nullptr || !options.progress) return;
+    // Before the lock is gone: no other thread may report after this one was told to end.
+    try {
       options.progress(static_cast<double>(done) / static_cast<double>(rows));
+    } catch (...) {
+      failure = std::current_exception();
+    }
   };
   const auto failed = [&] {
     const std::lock_guard lock(mutex);
