@@ -13,15 +13,6 @@
 #include <snug/bounds/fit_kernels.h>
 #include <snug/geometry/rounding.h>
 
-// Arrays of vectors stay in registers only where everything is inlined. Sanitizers' checks take minutes to
-// compile then.
-#undef SNUG_FLAT
-#ifdef SNUG_SANITIZED
-#define SNUG_FLAT
-#else
-#define SNUG_FLAT HWY_FLATTEN
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {

@@ -1,7 +1,9 @@
 // Included after geometry/vector_code-inl.h: no #pragma once, since each instruction set reads it again.
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include <snug/geometry.h>
 #include <snug/mesh.h>
@@ -15,6 +17,32 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
+
+/// Points, a lane a patch: three coordinates of each in a row.
+struct Lanes {
+  double* first;
+  std::size_t lanes;
+  [[nodiscard]] double* at(std::size_t i, std::size_t axis) const { return first + (3 * i + axis) * lanes; }
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> load(D d, const Lanes& points, std::size_t i) {
+  return {hn::Load(d, points.at(i, 0)), hn::Load(d, points.at(i, 1)), hn::Load(d, points.at(i, 2))};
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store(D d, const Vec3<V>& p, const Lanes& points, std::size_t i) {
+  hn::Store(p.x, d, points.at(i, 0));
+  hn::Store(p.y, d, points.at(i, 1));
+  hn::Store(p.z, d, points.at(i, 2));
+}
+
+/// A block of doubles for vectors, as large as it ever was on this thread.
+inline double* aligned_memory(std::size_t count) {
+  thread_local std::vector<double> memory;
+  memory.resize(std::max(memory.size(), count + HWY_MAX_BYTES / sizeof(double)));
+  const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory.data());
+  return memory.data() + (HWY_MAX_BYTES - address % HWY_MAX_BYTES) % HWY_MAX_BYTES / sizeof(double);
+}
 
 /// Control points [from, to) of the next `lanes` patches, for vectors with a patch a lane: coordinate a of
 /// control point i of patch l at out[(3 (i - from) + a) lanes + l]. Lanes beyond the `here` patches that are

@@ -2,6 +2,7 @@
 #define HWY_TARGET_INCLUDE "snug/bounds/part_kernels.cpp"
 #include <snug/geometry/vector_code-inl.h>
 // After it.
+#include <snug/bounds/lanes-inl.h>
 #include <snug/bounds/planar_triangle-inl.h>
 
 #include <algorithm>
@@ -12,14 +13,6 @@
 
 #include <snug/bounds/part_kernels.h>
 #include <snug/geometry/rounding.h>
-
-// Vectors stay in registers only where everything is inlined. Sanitizers' checks take minutes to compile then.
-#undef SNUG_FLAT
-#ifdef SNUG_SANITIZED
-#define SNUG_FLAT
-#else
-#define SNUG_FLAT HWY_FLATTEN
-#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
@@ -32,22 +25,6 @@ constexpr std::size_t quadratic_roundings = 256;
 // What axes may lack to be orthonormal.
 constexpr double max_stretch = 0x1p-46;
 
-// Points, a lane a patch.
-struct Lanes {
-  double* first;
-  std::size_t lanes;
-  [[nodiscard]] double* at(std::size_t i, std::size_t axis) const { return first + (3 * i + axis) * lanes; }
-};
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> load(D d, const Lanes& points, std::size_t i) {
-  return {hn::Load(d, points.at(i, 0)), hn::Load(d, points.at(i, 1)), hn::Load(d, points.at(i, 2))};
-}
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void store(D d, const Vec3<V>& p, const Lanes& points, std::size_t i) {
-  hn::Store(p.x, d, points.at(i, 0));
-  hn::Store(p.y, d, points.at(i, 1));
-  hn::Store(p.z, d, points.at(i, 2));
-}
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> zero3(D d) {
   return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -154,14 +131,6 @@ HWY_INLINE void hand_out(D d, std::size_t here, const Vec3<V>& v, const To& to) 
   hn::Store(v.y, d, lane + lanes);
   hn::Store(v.z, d, lane + 2 * lanes);
   for (std::size_t l = 0; l < here; ++l) to(l) = {lane[l], lane[lanes + l], lane[2 * lanes + l]};
-}
-
-// A block of doubles for vectors, as large as it ever was on this thread.
-HWY_INLINE double* aligned_memory(std::size_t count) {
-  thread_local std::vector<double> memory;
-  memory.resize(std::max(memory.size(), count + HWY_MAX_BYTES / sizeof(double)));
-  const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory.data());
-  return memory.data() + (HWY_MAX_BYTES - address % HWY_MAX_BYTES) % HWY_MAX_BYTES / sizeof(double);
 }
 
 // The control points of parts.

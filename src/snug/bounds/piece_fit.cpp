@@ -166,10 +166,10 @@ void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
   shapes_.resize(parts);
   frames_.resize(patches_.size());
   bounds_.resize(parts);
-  thread_local std::vector<const Patch*> of_kind;
-  thread_local std::vector<PartShape*> shapes;
-  thread_local std::vector<kernels::PlacedPart> placed;
-  thread_local std::vector<PartBounds*> bounds;
+  std::vector<const Patch*> of_kind;
+  std::vector<PartShape*> shapes;
+  std::vector<kernels::PlacedPart> placed;
+  std::vector<PartBounds*> bounds;
   for (PartBounds& part_bounds : bounds_) part_bounds.error = -1;
   for_each_kind(library, [&](const PartRows& rows, std::span<const std::uint32_t> which) {
     of_kind.clear();

@@ -23,8 +23,10 @@ struct PieceFit {
 /// vectors, those of a kind together. Parts at extraordinary corners are refined as long as their error exceeds that of the rest.
 ///
 /// Guarantee: offsets as offset_triangle(), quadratics as quadratic_triangle(). A patch's answer does not depend on the others.
-///            None for planes, needles, what is not finite, and patches of which a part is of a kind that passes or has no layout.
+///            No answer for planes, needles, what is not finite, and patches with a part beside a semi-sharp crease, or at a
+///            corner whose kind has no layout.
 /// Requires:  out.size() == patches.size().
+/// Cost:      3 to 5 microseconds a patch where many parts are of the same kinds; 4 KB of scratch a patch and thread.
 /// Source:    derivations/quadratics.md, "Many patches at once".
 void fit_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out);
 

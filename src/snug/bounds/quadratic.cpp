@@ -558,15 +558,12 @@ class Comparison {
                                      8 * unit_roundoff * (piece.largest + largest_of(q)));
   }
   void add_parts(const Patch& piece, const Quadratic& q, double given, unsigned level) {
-    static const std::array<Restriction, 4> to_child{
-        restriction_to(child_of(whole_patch, 0)), restriction_to(child_of(whole_patch, 1)),
-        restriction_to(child_of(whole_patch, 2)), restriction_to(child_of(whole_patch, 3))};
     const double off = given + gamma_bound(16) * largest_of(q);
     for (unsigned child = 0; child < 4 && !useless(); ++child) {
       Open& part = next_open();
       split(piece, child, part.piece);
       const Kind& kind = *part.piece.kind;
-      part.quadratic = turned(restricted(q, to_child[child]), part.piece.first);
+      part.quadratic = turned(restricted(q, quarter_rows().to_child[child]), part.piece.first);
       part.piece.first = 0;
       part.piece.path = {};
       // Those of a kind that few share are compared as they are where that is all of them.

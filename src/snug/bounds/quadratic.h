@@ -81,9 +81,11 @@ class QuadraticRows {
 
 /// Quadratics over the four children of a patch (split()), in the patch's order of corners.
 struct QuarterRows {
-  std::array<QuadraticRows::Restriction, 4> to_child;  ///< of a quadratic over the patch
-  std::array<QuadraticRows::Restriction, 4>
-      from_child;  ///< in sum the one that is nearest to four, Bezier point for Bezier point
+  /// From a quadratic over the patch to the same over a child.
+  std::array<QuadraticRows::Restriction, 4> to_child;
+  /// Back from any four: the sum of their images is the quadratic over the patch that is nearest to them, Bezier point for
+  /// Bezier point.
+  std::array<QuadraticRows::Restriction, 4> from_child;
 };
 [[nodiscard]] const QuarterRows& quarter_rows();
 

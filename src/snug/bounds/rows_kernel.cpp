@@ -21,24 +21,6 @@ namespace {
 // How much tips may add to the radius of the rest, and to its height.
 constexpr double max_excess = 0.03;
 
-// Points, a lane a patch: three coordinates of each in a row.
-struct Lanes {
-  double* first;
-  std::size_t lanes;
-  [[nodiscard]] double* at(std::size_t i, std::size_t axis) const { return first + (3 * i + axis) * lanes; }
-};
-
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> load(D d, const Lanes& points, std::size_t i) {
-  return {hn::Load(d, points.at(i, 0)), hn::Load(d, points.at(i, 1)), hn::Load(d, points.at(i, 2))};
-}
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void store(D d, const Vec3<V>& p, const Lanes& points, std::size_t i) {
-  hn::Store(p.x, d, points.at(i, 0));
-  hn::Store(p.y, d, points.at(i, 1));
-  hn::Store(p.z, d, points.at(i, 2));
-}
-
 // Two rows at once: control points are loaded once for both.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void apply_two(D d, const double* one, const double* two, const Lanes& control, std::size_t count,
@@ -189,11 +171,7 @@ void FitRows(const RowsWithTips& rows, std::span<const Point3> points, const Ver
              std::span<OffsetTriangle> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d), count = rows.control_count();
-  thread_local std::vector<double> memory;
-  memory.resize(3 * lanes * (count + rows.count()) + HWY_MAX_BYTES / sizeof(double));
-  const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory.data());
-  double* const aligned =
-      memory.data() + (HWY_MAX_BYTES - address % HWY_MAX_BYTES) % HWY_MAX_BYTES / sizeof(double);
+  double* const aligned = aligned_memory(3 * lanes * (count + rows.count()));
   const Lanes gathered{aligned, lanes}, results{aligned + 3 * lanes * count, lanes};
   for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
     const std::size_t here = std::min(lanes, out.size() - begin);

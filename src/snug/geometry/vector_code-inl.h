@@ -18,6 +18,14 @@
 #define SNUG_GEOMETRY_VECTOR_CODE_INL_H
 #endif
 
+// For functions whose vectors stay in registers only where everything is inlined. Sanitizers' checks take minutes to compile then.
+#undef SNUG_FLAT
+#ifdef SNUG_SANITIZED
+#define SNUG_FLAT
+#else
+#define SNUG_FLAT HWY_FLATTEN
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 

@@ -326,12 +326,7 @@ bool may_meet(const PieceSet& set, const QuadraticTriangle& part, double flat) {
   const Ball ball = ball_of(part);
   // Across the plane and, in it, across the longest edge, where most of what is in the ball around a narrow part lies.
   const Vector3 normal = unit_normal(part.corners);
-  Vector3 along;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3 edge = part.corners[(k + 1) % 3] - part.corners[k];
-    if (length_sq(edge) > length_sq(along)) along = edge;
-  }
-  const std::array<Vector3, 2> across{normal, normalized(cross(normal, along))};
+  const std::array<Vector3, 2> across{normal, normalized(cross(normal, longest_edge(part.corners)))};
   double reach = ball.radius;
   return set.visit_near(ball.centre, reach, [&](std::uint32_t piece) {
     return may_meet(part, ball, across, set[piece], std::max(flat, 4 * distance_rounding));

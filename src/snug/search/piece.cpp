@@ -39,6 +39,15 @@ LimitTriangle limit_triangle(const Patch& patch) {
   return result;
 }
 
+Vector3 longest_edge(const Triangle& triangle) {
+  Vector3 longest;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 edge = triangle[(k + 1) % 3] - triangle[k];
+    if (max_abs(edge) > max_abs(longest)) longest = edge;
+  }
+  return longest;
+}
+
 Vector3 unit_normal(const Triangle& triangle) {
   const Vector3 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
   // Sides of about 1, so that the product neither underflows nor overflows.
@@ -113,11 +122,7 @@ namespace {
 std::array<Vector3, 3> box_axes(const Triangle& base) {
   const Vector3 normal = unit_normal(base);
   if (normal == Vector3{}) return Obb{}.axes;
-  Vector3 along;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3 edge = base[(k + 1) % 3] - base[k];
-    if (max_abs(edge) > max_abs(along)) along = edge;
-  }
+  Vector3 along = longest_edge(base);
   along = (1 / max_abs(along)) * along;
   along = normalized(along - dot(along, normal) * normal);
   return {along, cross(normal, along), normal};

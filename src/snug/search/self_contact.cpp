@@ -49,11 +49,7 @@ class Slabs {
  public:
   explicit Slabs(const Triangle& triangle) {
     const Vector3 normal = unit_normal(triangle);
-    Vector3 along;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3 edge = triangle[(k + 1) % 3] - triangle[k];
-      if (length_sq(edge) > length_sq(along)) along = edge;
-    }
+    const Vector3 along = longest_edge(triangle);
     axes_ = {normalized(cross(normal, along)), normal, normalized(along)};
     for (std::size_t a = 0; a < 3; ++a) extents_[a] = extent_of(triangle, axes_[a]);
   }
