@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
+#include <testing/boxes.h>
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
 
@@ -76,17 +77,6 @@ Nearest nearest(const Segments& s, std::size_t i, const Point3& p) {
   return {length(p - (s.middle[i] + std::clamp(along, -s.half[i], s.half[i]) * s.along[i])), along};
 }
 
-Obb box_around(const std::vector<Point3>& points) {
-  return fit_box(principal_axes(points), [&](const Vector3& direction) {
-    Extent all;
-    for (const Point3& p : points) {
-      const double height = dot(direction, p - Point3{});
-      all.add({height - 1e-15, height + 1e-15});
-    }
-    return all;
-  });
-}
-
 TEST(ray_kernel, boxes_that_a_segment_meets_are_found) {
   std::mt19937_64 random(91);
   std::size_t met = 0, missed = 0;
@@ -99,7 +89,7 @@ TEST(ray_kernel, boxes_that_a_segment_meets_are_found) {
       const Point3 centre =
           Point3{0.3, -0.7, 1.1} + 4 * size * Vector3{unit(random), unit(random), unit(random)};
       clouds.push_back(testing::any_points(random, centre, size));
-      boxes.push_back(box_around(clouds.back()));
+      boxes.push_back(testing::box_around(clouds.back()));
       all.insert(all.end(), clouds.back().begin(), clouds.back().end());
     }
     const WideNode node(boxes);
@@ -216,7 +206,7 @@ TEST(ray_kernel, results_are_the_same_on_every_instruction_set) {
       std::vector<Point3> all;
       for (std::size_t l = 0; l < 8; ++l) {
         const auto cloud = testing::any_points(random, Point3{unit(random), unit(random), unit(random)}, 1);
-        boxes.push_back(box_around(cloud));
+        boxes.push_back(testing::box_around(cloud));
         all.insert(all.end(), cloud.begin(), cloud.end());
       }
       const WideNode node(boxes);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
+#include <testing/boxes.h>
 #include <testing/counts.h>
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
@@ -22,21 +23,10 @@ namespace {
 
 using testing::any_frame;
 using testing::any_points;
+using testing::box_around;
 using testing::distance_from_above;
 using testing::Extended;
 using testing::image;
-
-// A box around some points.
-Obb box_around(const std::vector<Point3>& points) {
-  return fit_box(principal_axes(points), [&](const Vector3& direction) {
-    Extent all;
-    for (const Point3& p : points) {
-      const double height = dot(direction, p - Point3{});
-      all.add({height - 1e-15, height + 1e-15});
-    }
-    return all;
-  });
-}
 
 // Small beside the unit, squares and then the lengths themselves leave single precision.
 TEST(wide_node, distance_of_a_point_holds_for_sets_of_any_size) {

@@ -4,14 +4,15 @@
 
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <support/error.h>
 #include <testing/places.h>
+#include <testing/ray_bundles.h>
 
 namespace snug::ray_test {
 namespace {
@@ -142,72 +143,16 @@ TEST(trace, answers_the_same_for_any_threads_and_order) {
   }
 }
 
-// Rays that lie close together go down the tree as one: at corners, at edges, at places inside of faces and past silhouettes, from
-// one eye or side by side, as far apart as a pixel or as the surface is large, they have the answers of each alone.
+// On models with many faces; sound/ray_test.cpp has every scheme, tag and boundary.
 TEST(trace, answers_together_are_those_alone) {
-  std::size_t hits = 0, misses = 0, grazing = 0;
+  std::mt19937_64 random(12345);
+  testing::BundleCounts counts;
   for (const char* name : {"bust.obj", "figure.obj", "bracket.obj", "ring.obj", "star.obj"}) {
-    const Surface surface = load(model(name));
-    std::uint64_t state = 12345;
-    const auto unit = [&] {
-      state = state * 6364136223846793005u + 1442695040888963407u;
-      return static_cast<double>(state >> 11) * 0x1p-53 * 2 - 1;
-    };
-    const double size = surface.size();
-    const auto& places = surface.mesh();
-    for (int bundle = 0; bundle < 60; ++bundle) {
-      // Corners and sides of patches lie at whole parameters.
-      const auto face =
-          static_cast<std::uint32_t>(std::fabs(unit()) * static_cast<double>(places.face_count()));
-      const double u = bundle % 3 == 0 ? 0 : std::fabs(unit()) / 2,
-                   v = bundle % 3 == 1 ? 0 : std::fabs(unit()) / 2;
-      const SurfacePoint at = evaluate(surface, Place{face, 0, u, v});
-      Vector3 from{unit(), unit(), unit()};
-      if (bundle % 4 == 3) {
-        // Along the surface: past a silhouette.
-        from = {at.tangents[0].x + 1e-3 * size * unit(), at.tangents[0].y, at.tangents[0].z};
-      }
-      const double away =
-          2 * size / std::max(1e-300, std::sqrt(from.x * from.x + from.y * from.y + from.z * from.z));
-      const Point3 eye{at.point.x + away * from.x, at.point.y + away * from.y, at.point.z + away * from.z};
-      const double apart = size * std::ldexp(1.0, -4 * (bundle % 10));
-      std::vector<Ray> rays;
-      for (int i = 0; i < 19; ++i) {
-        const Vector3 aside{apart * unit(), apart * unit(), apart * unit()};
-        const Point3 target{at.point.x + (i % 8 == 0 ? 0 : aside.x), at.point.y + (i % 8 == 0 ? 0 : aside.y),
-                            at.point.z + (i % 8 == 0 ? 0 : aside.z)};
-        const Point3 origin =
-            bundle % 2 == 0 ? eye : Point3{eye.x + aside.x, eye.y + aside.y, eye.z + aside.z};
-        rays.push_back({origin, {target.x - origin.x, target.y - origin.y, target.z - origin.z}});
-        if (bundle % 5 == 0) rays.back().to = 1.0 + 0.25 * unit();
-      }
-      for (const RayQuery query : {RayQuery::nearest, RayQuery::all, RayQuery::any}) {
-        RayOptions options{.query = query};
-        if (bundle % 2 == 0) options.absolute = 1e-3 * size;
-        const std::vector<RayHits> together = snug::ray(surface, rays, options, {.threads = 2});
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          const RayHits alone = snug::ray(surface, rays[i], options);
-          const RayHits& one = together[i];
-          (alone.certain_hit() ? hits : alone.certain_miss() ? misses : grazing)++;
-          ASSERT_EQ(alone.certain_hit(), one.certain_hit()) << name << ", bundle " << bundle << ", ray " << i;
-          ASSERT_EQ(alone.certain_miss(), one.certain_miss())
-              << name << ", bundle " << bundle << ", ray " << i;
-          if (query == RayQuery::any) continue;
-          ASSERT_EQ(alone.outcome, one.outcome);
-          ASSERT_EQ(alone.hits.size(), one.hits.size()) << name << ", bundle " << bundle << ", ray " << i;
-          for (std::size_t k = 0; k < alone.hits.size(); ++k) {
-            EXPECT_EQ(alone.hits[k].t, one.hits[k].t) << name << ", bundle " << bundle << ", ray " << i;
-            EXPECT_EQ(alone.hits[k].side, one.hits[k].side);
-            EXPECT_EQ(alone.hits[k].certified, one.hits[k].certified);
-          }
-        }
-      }
-    }
+    testing::expect_together_as_alone(load(model(name)), name, 60, random, counts);
+    if (HasFatalFailure()) return;
   }
-  EXPECT_GT(hits, 1000u);
-  EXPECT_GT(misses, 1000u);
-  std::cout << "  " << hits << " hits, " << misses << " misses, " << grazing
-            << " of which neither is proved\n";
+  EXPECT_GT(counts.hits, 1000u);
+  EXPECT_GT(counts.misses, 1000u);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <support/error.h>
 #include <testing/disguises.h>
 #include <testing/places.h>
+#include <testing/ray_bundles.h>
 #include <testing/solid_cases.h>
 #include <testing/surfaces.h>
 
@@ -948,6 +949,39 @@ TEST(rays, hold_in_every_disguise) {
   counts.print();
   std::cout << "  " << refused << " refused\n";
   for (const auto& [text, count] : counts.thrown) std::cout << "  " << count << " times: " << text << '\n';
+}
+
+TEST(rays, that_lie_together_have_the_answers_of_each_alone) {
+  std::mt19937_64 random(88);
+  testing::BundleCounts counts;
+  const auto ask = [&](const ControlMesh& mesh, const SchemeOptions& rules, const std::string& name) {
+    try {
+      testing::expect_together_as_alone(testing::public_surface(mesh, rules), name, 1, random, counts);
+    } catch (const InputError&) {
+      // No face has a surface.
+    }
+    return !HasFatalFailure();
+  };
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 89)) {
+      const std::string name = c.name + ", " + testing::text_of(c.rules);
+      if (!ask(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), name)) return;
+    }
+  }
+  for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge, Scheme::bilinear, Scheme::flat}) {
+    for (int shape = 0; shape < 6; ++shape) {
+      const TaggedMesh plain = shape % 3 == 0   ? oracle::meshes::prism(5)
+                               : shape % 3 == 1 ? oracle::meshes::quad_grid(4, 4)
+                                                : oracle::meshes::pyramid(7);
+      const TaggedMesh mesh = oracle::meshes::shaken(
+          scheme == Scheme::flat ? oracle::meshes::triangulated(plain) : plain, 0.3, random);
+      if (!ask(testing::control_mesh(mesh), {scheme}, std::string(name_of(scheme)))) return;
+    }
+  }
+  std::cout << "  " << counts.hits << " hits, " << counts.misses << " misses, " << counts.unsure
+            << " unsure\n";
+  EXPECT_GT(counts.hits, 4000u);
+  EXPECT_GT(counts.misses, 2000u);
 }
 
 }  // namespace
