@@ -55,13 +55,14 @@ class BoundedSum {
 struct PatchMeasures {
   FluxMoments moments;        // what is left at corners counts as error
   double lower = 0, gap = 0;  // of the area, what is left at corners included
-  double tips = 0;            // area left at corners, at most
+  double tips = 0;            // what is not known of pieces at corners
   std::uint64_t splits = 0;
   bool stuck = false;  // in rounding, or at the end of the budget
 };
 
+// What is not known of pieces at corners is the gap of their area, and their area times size times a weight: that much moments err.
 struct Goal {
-  double gap, tips;
+  double gap, tips, weight;
 };
 
 // A piece that is not regular.
@@ -69,7 +70,11 @@ struct Net {
   const Kind* kind;
   std::vector<kernels::NetPoint> points;
   double largest, error;
-  double area = 0;  // at most
+  // Of pieces that wait to be split.
+  PieceArea area{};
+  Point3 middle{};
+  double extent = 0;   // of the box around the points, by its diagonal
+  double unknown = 0;  // gap of the area, and what moments do not know, see Goal
 };
 
 class PatchMeasurer {
@@ -80,6 +85,7 @@ class PatchMeasurer {
 
   [[nodiscard]] PatchMeasures run(PatchId p, const Goal& goal) {
     result_ = {};
+    weight_ = goal.weight;
     pieces_.clear();
     tips_.clear();
     regular_.clear();
@@ -106,7 +112,7 @@ class PatchMeasurer {
     } else if (kind.transient() && result_.splits < patch_splits_) {
       refine(net);
     } else {
-      net.area = area_of(net);
+      bound_area(net);
       tips_.push_back(std::move(net));
     }
   }
@@ -163,61 +169,84 @@ class PatchMeasurer {
     regular_.clear();
   }
 
-  // Upper bound of the area of a net's piece.
-  double area_of(const Net& net) {
-    const double factor = asymptotics_of(*net.kind).area_factor();
+  // What is known of a net's piece.
+  void bound_area(Net& net) const {
+    Box3 box;
+    for (const auto& p : net.points) box.add(Point3{p[0], p[1], p[2]});
+    const Vector3 sides = box.upper - box.lower;
+    net.middle = box.lower + 0.5 * sides;
+    const double error = net.error + 4 * unit_roundoff * net.largest, more = 2 * error;
+    const double extent_sq = enlarged(length_sq({sides.x + more, sides.y + more, sides.z + more}));
+    net.extent = enlarged(std::sqrt(extent_sq));
+    const CornerAsymptotics& asymptotics = asymptotics_of(*net.kind);
+    const double factor = asymptotics.area_factor();
     if (!(factor < INFINITY)) {
       throw InputError(
           InputProblem::refused,
           "measure: Midedge converges too slowly beside a face of so many corners; split that face "
           "or use another scheme");
     }
-    return enlarged(factor * extent_sq(net));
+    const double most = enlarged(factor * extent_sq);
+    net.area = {0, most, {}, most};
+    if (const CornerForms* forms = asymptotics.forms())
+      net.area = forms->area_of(net.points, net.middle, extent_sq, error);
+    net.unknown = net.area.upper - net.area.lower + weight_ * net.extent * net.area.upper;
   }
-  // Squared diagonal of the box around the control points.
-  static double extent_sq(const Net& net) {
-    Box3 box;
-    for (const auto& p : net.points) box.add(Point3{p[0], p[1], p[2]});
-    const Vector3 sides = box.upper - box.lower;
-    const double more = 2 * net.error;
-    return enlarged(length_sq({sides.x + more, sides.y + more, sides.z + more}));
-  }
-  static bool smaller(const Net& a, const Net& b) { return a.area < b.area; }
+  static bool less_known(const Net& a, const Net& b) { return a.unknown < b.unknown; }
 
   void split_tips(double goal) {
     const auto sum_of_tips = [&] {
       double sum = 0;
-      for (const Net& tip : tips_) sum += tip.area;
+      for (const Net& tip : tips_) sum += tip.unknown;
       return enlarged(sum * (1 + gamma_bound(tips_.size())));
     };
-    ordering::make_heap(tips_.data(), tips_.size(), smaller);
+    ordering::make_heap(tips_.data(), tips_.size(), less_known);
     double left = sum_of_tips();
     while (left > goal && !tips_.empty()) {
       const Net& largest = tips_.front();
-      if (result_.splits >= patch_splits_ || extent_sq(largest) <= 0x1p12 * largest.error * largest.error) {
+      if (result_.splits >= patch_splits_ || largest.extent <= 64 * largest.error) {
         result_.stuck = true;
         break;
       }
-      ordering::pop_heap(tips_.data(), tips_.size(), smaller);
+      ordering::pop_heap(tips_.data(), tips_.size(), less_known);
       const Net tip = std::move(tips_.back());
       tips_.pop_back();
       const std::size_t before = tips_.size();
-      left -= tip.area;
+      left -= tip.unknown;
       refine(tip);
-      for (std::size_t i = before; i < tips_.size(); ++i) left += tips_[i].area;
-      for (std::size_t i = before; i < tips_.size(); ++i) ordering::push_heap(tips_.data(), i + 1, smaller);
+      for (std::size_t i = before; i < tips_.size(); ++i) left += tips_[i].unknown;
+      for (std::size_t i = before; i < tips_.size(); ++i)
+        ordering::push_heap(tips_.data(), i + 1, less_known);
       if (left <= goal) left = sum_of_tips();
     }
     left = sum_of_tips();
     result_.tips = left;
-    for (const Net& tip : tips_) {
-      // |x . N| is at most sqrt 3 reach |N|.
-      const double reach = max_abs(middle_) * (1 + 2 * unit_roundoff) + tip.largest + tip.error;
-      double power = spatial_error(reach) * tip.area;
-      for (std::size_t m = 0; m < 10; ++m) {
-        if (m == 1 || m == 4) power *= reach;
-        result_.moments.error[m] += enlarged(power);
-      }
+    for (const Net& tip : tips_) add_tip(tip);
+  }
+
+  // Moments as if the piece were where the middle m of its box is: x . N is m . F and what x is off from m.
+  void add_tip(const Net& tip) {
+    const Vector3 middle = middle_ + (tip.middle - Point3{});
+    const double reach = max_abs(middle_) * (1 + 2 * unit_roundoff) + tip.largest + tip.error;
+    const double off = 0.5 * tip.extent + 8 * unit_roundoff * reach;
+    const double from_middle = off * tip.area.upper;
+    const double flux = dot(middle, tip.area.flux);
+    const double flux_error =
+        from_middle + spatial_error(reach) * (tip.area.flux_error + gamma_bound(8) * length(tip.area.flux));
+    // Along with the integrand its factors change, each by `off`.
+    const double by_factor = spatial_error(from_middle);
+    const auto add = [&](std::size_t m, double factor, double size, double change) {
+      double& sum = result_.moments.value[m];
+      sum += factor * flux;
+      result_.moments.error[m] += enlarged(size * (flux_error + gamma_bound(8) * std::fabs(flux)) + change) +
+                                  unit_roundoff * std::fabs(sum);
+    };
+    add(0, 1, 1, 0);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double x = middle[a], y = middle[(a + 1) % 3];
+      add(1 + a, x, reach, reach * by_factor);
+      add(4 + a, x * x, reach * reach, 2 * reach * reach * by_factor);
+      add(7 + a, x * y, reach * reach, 2 * reach * reach * by_factor);
     }
   }
 
@@ -254,9 +283,13 @@ class PatchMeasurer {
       lower += piece.area().lower;
       upper += piece.area().upper;
     }
-    const double g = gamma_bound(pieces_.size() + 2);
+    for (const Net& tip : tips_) {
+      lower += tip.area.lower;
+      upper += tip.area.upper;
+    }
+    const double g = gamma_bound(pieces_.size() + tips_.size() + 2);
     result_.lower = lower * (1 - g);
-    result_.gap = enlarged(upper * (1 + g) + result_.tips - result_.lower);
+    result_.gap = enlarged(upper * (1 + g) - result_.lower);
   }
   // Puts a piece in line if it can be improved; its gap.
   double push(std::uint32_t i) {
@@ -272,6 +305,7 @@ class PatchMeasurer {
   std::uint64_t patch_splits_;
   const WorkMonitor& monitor_;
   PatchMeasures result_;
+  double weight_ = 0;
   Patch patch_;
   Vector3 middle_;
   std::vector<Net> tips_;
@@ -389,8 +423,9 @@ class SurfaceMeasurer {
 
   [[nodiscard]] Measures run() {
     const double relative = options_.relative.value_or(default_relative);
-    // Rests at corners count more in moments than in the area.
-    double gap = 0.4 * relative * estimate_, tips = (closed_ ? 0.05 : 0.4) * relative * estimate_;
+    double gap = 0.4 * relative * estimate_, tips = 0.4 * relative * estimate_;
+    // Moments of inertia, about a tenth of the volume times the squared size, err by most.
+    if (closed_) weight_ = estimate_ / std::max(std::fabs(volume_), relative * size_ * size_ * size_);
     Answer answer;
     for (int round = 0; round < max_quadratic_rounds; ++round) {
       const bool some = round_of(gap, tips, round);
@@ -415,19 +450,23 @@ class SurfaceMeasurer {
   }
 
  private:
-  // Shares of the goals: half alike, half by areas of flat triangles.
+  // By flat triangles: shares of the goals, half alike, half by areas; and how large the answers are.
   void find_shares() {
     shares_.resize(patches_.size());
+    std::vector<double> volumes(patches_.size());
     parallel_for(patches_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       Patch patch;
       for (std::size_t i = begin; i < end; ++i) {
         surface_.patch(patches_[i], patch);
         const std::array<Vector3, 3> corners = limit_corners(patch);
-        const double area = 0.5 * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
-        shares_[i] = surface_.rules().triangular() ? area : 2 * area;
+        const Vector3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        const double part = surface_.rules().triangular() ? 0.5 : 1;
+        shares_[i] = part * length(across);
+        volumes[i] = part / 3 * dot(across, patch.origin + corners[0] - origin_);
       }
     });
     for (const double share : shares_) estimate_ += share;
+    for (const double volume : volumes) volume_ += volume;
     const double by = estimate_ > 0 ? 0.5 / estimate_ : 0;
     for (double& share : shares_) share = share * by + 0.5 / static_cast<double>(patches_.size());
   }
@@ -438,7 +477,7 @@ class SurfaceMeasurer {
     results_.resize(patches_.size());
     for (std::uint32_t i = 0; i < patches_.size(); ++i) {
       const PatchMeasures& before = results_[i];
-      const bool done = before.gap - before.tips <= shares_[i] * gap && before.tips <= shares_[i] * tips;
+      const bool done = before.gap <= shares_[i] * (gap + tips) && before.tips <= shares_[i] * tips;
       if (round == 0 || (!done && !before.stuck)) open.push_back(i);
     }
     std::atomic<std::size_t> count{0};
@@ -447,7 +486,7 @@ class SurfaceMeasurer {
         [&](PatchMeasurer& measurer, std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = open[k];
-            results_[i] = measurer.run(patches_[i], {shares_[i] * gap, shares_[i] * tips});
+            results_[i] = measurer.run(patches_[i], {shares_[i] * gap, shares_[i] * tips, weight_});
           }
           count += end - begin;
           if (round == 0) monitor_.report(static_cast<double>(count) / static_cast<double>(open.size()));
@@ -476,7 +515,7 @@ class SurfaceMeasurer {
   std::vector<PatchId> patches_;  // a quad's first patch stands for both
   std::vector<double> shares_;
   std::vector<PatchMeasures> results_;
-  double size_ = 0, estimate_ = 0;
+  double size_ = 0, estimate_ = 0, volume_ = 0, weight_ = 0;
   Point3 origin_;
   bool closed_ = false;
   std::uint64_t patch_splits_ = 0;

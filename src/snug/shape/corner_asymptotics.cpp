@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
+#include <snug/shape/dense_rows.h>
 
 namespace snug {
 namespace {
@@ -17,102 +18,6 @@ namespace {
 constexpr std::size_t max_period = 24;
 // Largest matrices whose powers are taken for a smaller factor, or to find one at all.
 constexpr std::size_t common_size = 80, largest_power = 600;
-
-// By how much at most the extent of points in any direction grows when they are replaced by rows of them: for
-// rows a and b it is half the sum of |a - b|.
-double growth(double largest_sum, double overlap, double overlap_error) {
-  return std::max(0.0, enlarged(largest_sum * (1 + gamma_bound(4096)) - overlap + overlap_error));
-}
-
-// The common part of all rows, a column at a time.
-class Overlap {
- public:
-  explicit Overlap(std::size_t columns) : min_(columns, INFINITY), row_(columns, 0.0) {}
-  void add(std::span<const double> row) {
-    for (std::size_t c = 0; c < row.size(); ++c) min_[c] = std::min(min_[c], row[c]);
-  }
-  void add(const Stencils::Row& row) {
-    std::fill(row_.begin(), row_.end(), 0.0);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) row_[row.sources[i]] += row.weights[i];
-    add(row_);
-  }
-  [[nodiscard]] double sum() const {
-    double sum = 0;
-    for (const double least : min_) sum += std::max(0.0, least);
-    return sum;
-  }
-
- private:
-  std::vector<double> min_, row_;
-};
-
-double growth_of(const Stencils& rows, std::span<const std::uint32_t> which, std::size_t columns) {
-  Overlap overlap(columns);
-  for (const std::uint32_t r : which) overlap.add(rows.row(r));
-  return growth(rows.max_abs_sum(), overlap.sum(),
-                2 * static_cast<double>(columns) * (rows.max_error() + gamma_bound(8)));
-}
-
-// Control points after some steps from those before.
-class DenseRows {
- public:
-  // None yet: each point by itself.
-  explicit DenseRows(std::size_t size) : columns_(size) {}
-
-  void step(const Stencils& rows, std::span<const std::uint32_t> which) {
-    std::vector<double> product(which.size() * columns_, 0.0);
-    for (std::size_t r = 0; r < which.size(); ++r) {
-      const Stencils::Row row = rows.row(which[r]);
-      double* const to = product.data() + r * columns_;
-      for (std::size_t i = 0; i < row.sources.size(); ++i) {
-        add(row.weights[i], row.sources[i], to);
-      }
-    }
-    multiplied(rows.max_abs_sum(), rows.max_error() + gamma_bound(8));
-    matrix_ = std::move(product);
-  }
-  // Requires:  as many rows as columns.
-  void square() {
-    std::vector<double> product(columns_ * columns_, 0.0);
-    for (std::size_t r = 0; r < columns_; ++r) {
-      for (std::size_t k = 0; k < columns_; ++k) {
-        const double weight = matrix_[r * columns_ + k];
-        if (weight != 0) add(weight, k, product.data() + r * columns_);
-      }
-    }
-    multiplied(sum_, error_);
-    matrix_ = std::move(product);
-  }
-  [[nodiscard]] std::size_t columns() const { return columns_; }
-  [[nodiscard]] double growth() const {
-    if (matrix_.empty()) return 1;
-    Overlap overlap(columns_);
-    for (std::size_t begin = 0; begin < matrix_.size(); begin += columns_) {
-      overlap.add(std::span(matrix_).subspan(begin, columns_));
-    }
-    return snug::growth(sum_, overlap.sum(), 2 * static_cast<double>(columns_) * error_);
-  }
-
- private:
-  // Adds a row, weighted.
-  void add(double weight, std::size_t row, double* to) const {
-    if (matrix_.empty()) {
-      to[row] += weight;
-      return;
-    }
-    const double* const from = matrix_.data() + row * columns_;
-    for (std::size_t c = 0; c < columns_; ++c) to[c] += weight * from[c];
-  }
-  void multiplied(double sum, double error) {
-    error_ = enlarged(error_ * (sum + error) + error * sum_ +
-                      gamma_bound(columns_ + 2) * (sum + error) * (sum_ + error_));
-    sum_ = enlarged(sum_ * sum);
-  }
-
-  std::size_t columns_;
-  std::vector<double> matrix_;
-  double sum_ = 1, error_ = 0;  // largest absolute sum of a row; of errors of its entries
-};
 
 // The least factor, by one period, two, four, ... at once, `other` being that of all that one period splits
 // off. Factors grow by a power of extents' growth.
@@ -207,6 +112,11 @@ class CornerAsymptotics::FactorSearch {
 const CharacteristicMap* CornerAsymptotics::characteristic_map() const {
   const auto& map = map_.get([&] { return make_characteristic_map(kind_); });
   return map ? &*map : nullptr;
+}
+
+const CornerForms* CornerAsymptotics::forms() const {
+  const auto& forms = forms_.get([&] { return make_corner_forms(kind_, area_factor()); });
+  return forms ? &*forms : nullptr;
 }
 
 double CornerAsymptotics::factor(Measure measure) const {

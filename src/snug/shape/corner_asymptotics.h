@@ -6,6 +6,7 @@
 
 #include <snug/patch/kind_cache.h>
 #include <snug/shape/characteristic_map.h>
+#include <snug/shape/corner_forms.h>
 #include <support/lazy.h>
 
 namespace snug {
@@ -26,6 +27,8 @@ class CornerAsymptotics {
   /// A factor c such that the area is at most c d^2.
   /// Source:    derivations/measures.md, "What is left at a corner".
   [[nodiscard]] double area_factor() const { return factor(areas); }
+  /// Nearer bounds than that factor's; null where there are none, see make_corner_forms().
+  [[nodiscard]] const CornerForms* forms() const;
   /// A factor c such that the distance of any two points along the surface is at most c d.
   /// Source:    derivations/self_contact.md, "Lengths".
   [[nodiscard]] double length_factor() const { return factor(lengths); }
@@ -37,6 +40,7 @@ class CornerAsymptotics {
 
   const Kind& kind_;
   Lazy<std::optional<CharacteristicMap>> map_;
+  Lazy<std::optional<CornerForms>> forms_;
   std::array<Lazy<double>, 2> factors_;  // of each Measure
 };
 
