@@ -1,3 +1,4 @@
+#include <snug/bvh/set_kernel.h>
 #include <snug/bvh/wide_bvh.h>
 
 #include <gtest/gtest.h>
@@ -160,6 +161,61 @@ struct AnySet {
     });
   }
 };
+
+TEST(bounding_tree, extents_of_sets_hold_them_whatever_is_beside) {
+  std::mt19937_64 random(10);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 400; ++trial) {
+    const std::size_t count = 1 + random() % 20;
+    const double size = std::pow(10.0, -static_cast<double>(random() % 8));
+    std::vector<AnySet> made;
+    std::vector<kernels::SetNumbers> numbers;
+    std::vector<std::uint32_t> which;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      made.emplace_back(Point3{normal(random), normal(random), normal(random)}, size, random);
+      if (random() % 16 == 0) made.back().set.box.half.y = INFINITY;
+      numbers.push_back(kernels::numbers_of(made.back().set));
+      which.insert(which.begin(), i);
+    }
+    const Axes axes = orthonormal_axes({normal(random), normal(random), normal(random)}, {1, 2, 3});
+    std::vector<kernels::SetSides> sides(count);
+    const std::array<Extent, 3> all = kernels::extents_along(axes, numbers, which, sides.data());
+    std::array<Extent, 3> one_by_one;
+    for (std::size_t place = 0; place < count; ++place) {
+      const AnySet& here = made[which[place]];
+      const std::array<Extent, 3> own =
+          kernels::extents_along(axes, numbers, std::span(which).subspan(place, 1), sides.data() + place);
+      for (std::size_t k = 0; k < 3; ++k) {
+        one_by_one[k].add(own[k]);
+        const bool bounded = here.set.box.half.y < INFINITY;
+        Extent points;
+        for (const Point3& p : here.points) points.add(dot(axes[k], p - Point3{}));
+        EXPECT_LE(own[k].lower, points.lower + 1e-14);
+        EXPECT_GE(own[k].upper, points.upper - 1e-14);
+        EXPECT_EQ(own[k].upper < INFINITY, bounded);
+        if (!bounded) continue;
+        EXPECT_NEAR(sides[place].lower[k], own[k].lower, 1e-6);
+        EXPECT_NEAR(sides[place].upper[k], own[k].upper, 1e-6);
+        // No wider than the box, nor than the net and the error.
+        const std::array<Vector3, 3>& box_axes = here.set.box.axes;
+        double reach = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+          reach += here.set.box.half[a] * std::fabs(dot(axes[k], box_axes[a]));
+        const double middle = dot(axes[k], here.set.box.centre - Point3{});
+        EXPECT_LE(own[k].upper, middle + reach + 1e-12);
+        EXPECT_GE(own[k].lower, middle - reach - 1e-12);
+        Extent net;
+        for (const Point3& p : here.set.net) net.add(dot(axes[k], p - Point3{}));
+        EXPECT_LE(own[k].upper, net.upper + here.set.error + 1e-12);
+        EXPECT_GE(own[k].lower, net.lower - here.set.error - 1e-12);
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(all[k].lower, one_by_one[k].lower);
+      EXPECT_EQ(all[k].upper, one_by_one[k].upper);
+    }
+  }
+}
 
 TEST(bounding_tree, of_sets_holds_every_set_once_below_boxes_that_contain_it) {
   std::mt19937_64 random(8);

@@ -274,35 +274,6 @@ double error_along(const Vector3& w, const Vector3& n, double error, double norm
   return most * (1 + 0x1p-45) + 0x1p-47 * error;
 }
 
-Extent extent_of(const FittedSet& set, const Vector3& direction) {
-  const Extent of_box = extent_of(std::span(&set.box, 1), direction);
-  if (!(set.error < INFINITY) || !(of_box.upper < INFINITY)) return of_box;
-  // Bezier points of the quarters, those that are no means of others.
-  std::array<double, 6> h;
-  const Point3& from = set.net[0];
-  double largest = 0;
-  h[0] = 0;
-  for (std::size_t k = 1; k < 6; ++k) {
-    const Vector3 v = set.net[k] - from;
-    h[k] = dot(direction, v);
-    largest = std::max(largest, max_abs(v));
-  }
-  Extent of_net{std::min({h[0], h[1], h[2]}), std::max({h[0], h[1], h[2]})};
-  const double inner = h[3] + h[4] + h[5];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t next = (k + 1) % 3;
-    const double centre = (h[k] + inner) / 4;
-    of_net.add({std::min(centre, (std::min(h[k], h[next]) + h[3 + k]) / 2),
-                std::max(centre, (std::max(h[k], h[next]) + h[3 + k]) / 2)});
-  }
-  const double middle = dot(direction, from - Point3{});
-  const double reach = enlarged(error_along(direction, set.normal, set.error, set.normal_error) +
-                                64 * unit_roundoff * (largest + max_abs(from - Point3{}))) +
-                       16 * underflow_error;
-  return {std::max(of_box.lower, middle + of_net.lower - reach),
-          std::min(of_box.upper, middle + of_net.upper + reach)};
-}
-
 Axes axes_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which) {
   // Those of many boxes are about those of some.
   constexpr std::size_t max_boxes = 256;

@@ -72,9 +72,6 @@ struct FittedSet {
   Vector3 normal{};
   double normal_error = 0;
 };
-/// Bounds of dot(direction, x) over such a set, rounding included.
-/// Requires:  |direction| 1 up to a few roundings.
-[[nodiscard]] Extent extent_of(const FittedSet& set, const Vector3& direction);
 /// Axes that suit a box around one or more of these.
 [[nodiscard]] Axes axes_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which);
 

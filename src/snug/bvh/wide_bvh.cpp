@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <optional>
+#include <tuple>
 #include <utility>
 
+#include <snug/bvh/set_kernel.h>
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
 #include <support/ordering.h>
@@ -161,149 +165,179 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) :
   finish(merge(fitted.below), ball_around(fitted.leaves), fitted.leaves);
 }
 
-// Splits sets in two, again and again, after a multiple of the sets of a leaf.
+// Splits sets in two, again and again, after a multiple of the sets of a leaf: across an axis of the last box that was fitted
+// around them, which is that of their node or, where they are many, their own.
 class WideBvh::Builder {
  public:
+  // Items that lie together.
+  struct Part {
+    std::size_t begin, end;
+    float cost = 0;  // number times surface; negative for a leaf
+    std::optional<Obb> box{};
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+  };
+
   Builder(std::span<const FittedSet> sets, std::span<std::uint32_t> items, std::vector<WideNode>& nodes,
           const WorkMonitor& monitor)
       : sets_(sets),
         items_(items),
         nodes_(nodes),
         monitor_(monitor),
-        order_(items.size()),
-        sides_(items.size()) {}
-
-  struct Range {
-    std::size_t begin, end;
-    Obb box;
-    [[nodiscard]] std::size_t size() const { return end - begin; }
-    [[nodiscard]] double cost() const {
-      const Vector3& h = box.half;
-      return static_cast<double>(size()) * (h.x * h.y + h.y * h.z + h.z * h.x);
-    }
-  };
-  [[nodiscard]] Range range(std::size_t begin, std::size_t end) {
-    monitor_.checkpoint();
-    const Axes axes = axes_around(sets_, items_.subspan(begin, end - begin));
-    std::array<Extent, 3> all;
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Extent extent = extent_of(sets_[items_[i]], axes[k]);
-        all[k].add(extent);
-        sides_[i].lower[k] = static_cast<float>(std::max(extent.lower, -1e6));
-        sides_[i].upper[k] = static_cast<float>(std::min(extent.upper, 1e6));
-      }
-    }
-    return {begin, end, box_of(axes, all)};
+        leaves_((items.size() + leaf_size - 1) / leaf_size),
+        sides_(items.size()),
+        keys_(items.size()),
+        moved_(items.size()) {
+    numbers_.reserve(sets.size());
+    for (const FittedSet& set : sets) numbers_.push_back(kernels::numbers_of(set));
+    for (auto& sorted : sorted_) sorted.resize(items.size());
   }
-  // Makes what is below a box; the name of it.
-  std::uint32_t make(const Range& whole) {
-    if (whole.size() <= leaf_size) return static_cast<std::uint32_t>(whole.begin / leaf_size) | leaf_bit;
-    std::vector<Range> ranges{whole};
-    while (ranges.size() < WideNode::width) {
-      const auto costliest =
-          std::max_element(ranges.begin(), ranges.end(), [](const Range& x, const Range& y) {
-            return (x.size() > leaf_size ? x.cost() : -1) < (y.size() > leaf_size ? y.cost() : -1);
-          });
-      if (costliest->size() <= leaf_size) break;
-      const std::size_t middle = split(*costliest), end = costliest->end;
-      *costliest = range(costliest->begin, middle);
-      ranges.insert(std::next(costliest), range(middle, end));
+
+  // Its box.
+  void fit(Part& part) {
+    monitor_.checkpoint();
+    const std::span<const std::uint32_t> items = items_.subspan(part.begin, part.size());
+    const Axes axes = axes_around(sets_, items);
+    part.box = box_of(axes, kernels::extents_along(axes, numbers_, items, sides_.data() + part.begin));
+  }
+  // Makes what is below a part that was fitted last; the name of it.
+  std::uint32_t make(const Part& whole) {
+    if (whole.size() <= leaf_size) {
+      leaves_[whole.begin / leaf_size] = *whole.box;
+      return static_cast<std::uint32_t>(whole.begin / leaf_size) | leaf_bit;
     }
     const std::size_t name = nodes_.size();
     nodes_.emplace_back();
     std::vector<Obb> boxes;
     std::vector<std::uint32_t> names;
-    for (const Range& part : ranges) {
-      boxes.push_back(part.box);
+    for (Part& part : parts_of(whole)) {
+      if (!part.box) fit(part);
+      boxes.push_back(*part.box);
       names.push_back(make(part));
     }
     nodes_[name] = WideNode(boxes, names);
     return static_cast<std::uint32_t>(name);
   }
+  [[nodiscard]] std::span<const Obb> leaves() const { return leaves_; }
 
  private:
-  // What a set takes of three axes, in single precision.
-  struct Sides {
-    std::array<float, 3> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
-    void add(const Sides& other) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        lower[k] = std::min(lower[k], other.lower[k]);
-        upper[k] = std::max(upper[k], other.upper[k]);
-      }
-    }
-    [[nodiscard]] float surface() const {
-      const float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
-      return x * y + y * z + z * x;
-    }
-  };
+  // Parts of at most so many are split along the axes of their node.
+  static constexpr std::size_t few = 64;
 
-  // Across that axis of the box, and there, where number times surface is least.
-  std::size_t split(const Range& range) {
-    const std::size_t count = range.size();
-    const std::span<std::uint32_t> items = items_.subspan(range.begin, count);
-    const std::span<const Sides> sides = std::span(sides_).subspan(range.begin, count);
+  // Eight of them, the costliest halved first.
+  std::vector<Part> parts_of(const Part& whole) {
+    std::vector<Part> parts{whole};
+    sort(whole);
+    while (parts.size() < WideNode::width) {
+      const auto costliest = std::max_element(parts.begin(), parts.end(),
+                                              [](const Part& x, const Part& y) { return x.cost < y.cost; });
+      if (!(costliest->cost >= 0)) break;
+      auto [first, second] = halves(*costliest);
+      if (parts.size() + 1 < WideNode::width) {
+        for (Part* half : {&first, &second}) {
+          if (half->size() <= few) continue;
+          fit(*half);
+          sort(*half);
+        }
+      }
+      *costliest = first;
+      parts.insert(std::next(costliest), second);
+    }
+    return parts;
+  }
+
+  // Across that axis, and there, where number times surface is least.
+  std::pair<Part, Part> halves(const Part& part) {
+    const std::size_t count = part.size();
     // An eighth at least on either side, so that trees are not deep.
     const std::size_t least_part = count > 8 * leaf_size ? count / 8 : 0;
-    float least = INFINITY;
+    float least = INFINITY, first_surface = 0, second_surface = 0;
     std::size_t best = (count / leaf_size + 1) / 2 * leaf_size, best_axis = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      sort_along(k, sides);
+      const std::uint32_t* const sorted = sorted_[k].data() + part.begin;
       left_.clear();
-      Sides first, last;
+      kernels::SetSides first, last;
       for (std::size_t i = 0; i < count; ++i) {
         if (i > 0 && i % leaf_size == 0) left_.push_back(first.surface());
-        first.add(sides[order_[i].second]);
+        first.add(sides_[sorted[i]]);
       }
       for (std::size_t i = count - 1; i > 0; --i) {
-        last.add(sides[order_[i].second]);
+        last.add(sides_[sorted[i]]);
         if (i % leaf_size != 0 || i < least_part || count - i < least_part) continue;
-        const float cost =
-            left_[i / leaf_size - 1] * static_cast<float>(i) + last.surface() * static_cast<float>(count - i);
+        const float left = left_[i / leaf_size - 1], right = last.surface();
+        const float cost = left * static_cast<float>(i) + right * static_cast<float>(count - i);
         if (!(cost < least)) continue;
         least = cost;
         best = i;
         best_axis = k;
+        first_surface = left;
+        second_surface = right;
       }
     }
-    if (best_axis != 2) sort_along(best_axis, sides);
-    for (std::size_t i = 0; i < count; ++i) order_[i].second = items[order_[i].second];
-    for (std::size_t i = 0; i < count; ++i) items[i] = order_[i].second;
-    return range.begin + best;
+    const std::size_t middle = part.begin + best;
+    move(part, middle, best_axis);
+    const auto half = [](std::size_t begin, std::size_t end, float surface) {
+      return Part{begin, end, end - begin > leaf_size ? static_cast<float>(end - begin) * surface : -1};
+    };
+    return {half(part.begin, middle, first_surface), half(middle, part.end, second_surface)};
   }
-  void sort_along(std::size_t axis, std::span<const Sides> sides) {
-    const std::size_t count = sides.size();
-    for (std::size_t i = 0; i < count; ++i)
-      order_[i] = {sides[i].lower[axis] + sides[i].upper[axis], static_cast<std::uint32_t>(i)};
-    std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count));
+
+  // Items come to lie as they are sorted along an axis; either side of the middle keeps its order along the others.
+  void move(const Part& part, std::size_t middle, std::size_t axis) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const std::uint32_t from = sorted_[axis][i];
+      moved_[i] = {sides_[from], items_[from]};
+      keys_[from] = i;
+    }
+    for (std::size_t i = part.begin; i < part.end; ++i) std::tie(sides_[i], items_[i]) = moved_[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = part.begin; i < part.end; ++i)
+        sorted_[k][i] = static_cast<std::uint32_t>(keys_[sorted_[k][i]]);
+      const auto from = sorted_[k].begin();
+      std::stable_partition(from + static_cast<std::ptrdiff_t>(part.begin),
+                            from + static_cast<std::ptrdiff_t>(part.end),
+                            [middle](std::uint32_t i) { return i < middle; });
+    }
+  }
+
+  // Along each axis.
+  void sort(const Part& part) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = part.begin; i < part.end; ++i) {
+        // Bits of floats are in their order as integers if those of negative ones are turned over.
+        const auto bits = std::bit_cast<std::uint32_t>(sides_[i].lower[k] + sides_[i].upper[k]);
+        const std::uint32_t key = bits ^ ((bits >> 31) != 0 ? ~0u : 1u << 31);
+        keys_[i] = std::uint64_t{key} << 32 | i;
+      }
+      std::sort(keys_.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                keys_.begin() + static_cast<std::ptrdiff_t>(part.end));
+      for (std::size_t i = part.begin; i < part.end; ++i)
+        sorted_[k][i] = static_cast<std::uint32_t>(keys_[i]);
+    }
   }
 
   std::span<const FittedSet> sets_;
+  std::vector<kernels::SetNumbers> numbers_;
   std::span<std::uint32_t> items_;
   std::vector<WideNode>& nodes_;
   const WorkMonitor& monitor_;
-  std::vector<std::pair<float, std::uint32_t>> order_;
-  std::vector<Sides> sides_;  // of the items, along the axes of the range that they are in
+  std::vector<Obb> leaves_;
+  std::vector<kernels::SetSides>
+      sides_;  // of items, along the axes of the last box that was fitted around them
+  std::array<std::vector<std::uint32_t>, 3> sorted_;  // places of items along each axis, part by part
+  std::vector<std::uint64_t> keys_;
+  std::vector<std::pair<kernels::SetSides, std::uint32_t>> moved_;
   std::vector<float> left_;
 };
 
 WideBvh::WideBvh(std::span<const FittedSet> sets, const WorkMonitor& monitor) : WideBvh(sets.size()) {
   nodes_.clear();
   Builder builder(sets, items_, nodes_, monitor);
-  const Builder::Range whole = builder.range(0, sets.size());
+  Builder::Part whole{0, sets.size()};
+  builder.fit(whole);
   whole_ = builder.make(whole);
   made_ = std::vector<std::atomic<bool>>(nodes_.size());
   for (auto& made : made_) made.store(true, std::memory_order_relaxed);
-  std::vector<Obb> leaves;
-  for (std::size_t i = 0; i < leaf_count(); ++i) {
-    const std::span<const std::uint32_t> items = leaf(i);
-    leaves.push_back(fit_box(axes_around(sets, items), [&](const Vector3& axis) {
-      Extent all;
-      for (const std::uint32_t item : items) all.add(extent_of(sets[item], axis));
-      return all;
-    }));
-  }
-  finish(whole.box, ball_around(leaves), leaves);
+  finish(*whole.box, ball_around(builder.leaves()), builder.leaves());
 }
 
 WideBvh::WideBvh(std::span<const Ball> balls, Fit fit, unsigned part_level) : WideBvh(balls.size()) {

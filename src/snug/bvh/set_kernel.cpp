@@ -1,0 +1,157 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "snug/bvh/set_kernel.cpp"
+#include <snug/geometry/vector_code-inl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <snug/bvh/set_kernel.h>
+#include <snug/geometry/rounding.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace snug::kernels::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t most_lanes = 8, row_count = sizeof(SetNumbers) / sizeof(double);
+using Tag = hn::CappedTag<double, most_lanes>;
+using V = hn::Vec<Tag>;
+using Point = Vec3<V>;
+
+HWY_INLINE V set(double x) { return hn::Set(Tag(), x); }
+
+// Numbers of SetNumbers, each of some sets; lanes beyond them repeat the last.
+class Block {
+ public:
+  HWY_INLINE void gather(std::span<const SetNumbers> sets, std::span<const std::uint32_t> which) {
+    for (std::size_t l = 0; l < hn::Lanes(Tag()); ++l) {
+      const auto* const from = reinterpret_cast<const double*>(&sets[which[std::min(l, which.size() - 1)]]);
+      for (std::size_t r = 0; r < row_count; ++r) rows_[r][l] = from[r];
+    }
+  }
+  HWY_INLINE V number(std::size_t row) const { return hn::Load(Tag(), rows_[row]); }
+  HWY_INLINE Point point(std::size_t row) const { return {number(row), number(row + 1), number(row + 2)}; }
+
+ private:
+  HWY_ALIGN double rows_[row_count][most_lanes];
+};
+
+// Rows of SetNumbers.
+constexpr std::size_t centre = 0, axes_row = 3, halves = 12, box_error = 15, corner = 16, net = 19,
+                      normal_row = 34, error_row = 37, normal_error = 38, tilt = 39, slack = 40;
+static_assert(row_count == 41);
+
+struct ExtentV {
+  V lower, upper;
+};
+
+// As error_along().
+HWY_INLINE V error_of(const Block& block, const Point& w) {
+  const Point n = block.point(normal_row);
+  const V error = block.number(error_row), zero = hn::Zero(Tag());
+  const V cosine = dot(w, n), length_sq = dot(w, w);
+  const V sine = hn::Sqrt(hn::Max(zero, hn::Sub(length_sq, hn::Mul(cosine, cosine))));
+  const V part = hn::Max(zero, hn::Sub(hn::Abs(cosine), hn::Mul(sine, block.number(tilt))));
+  const Point rest = sub(w, scaled(hn::CopySign(part, cosine), n));
+  const V most =
+      hn::Min(hn::Add(hn::Mul(part, block.number(normal_error)), hn::Mul(hn::Sqrt(dot(rest, rest)), error)),
+              hn::Mul(hn::Sqrt(length_sq), error));
+  return hn::Add(hn::Mul(most, set(1 + 0x1p-45)), hn::Mul(set(0x1p-47), error));
+}
+
+HWY_INLINE ExtentV extent(const Block& block, const Vector3& axis) {
+  const Point w{set(axis.x), set(axis.y), set(axis.z)};
+  V reach = block.number(box_error);
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach = hn::Add(reach, hn::Mul(block.number(halves + k), hn::Abs(dot(w, block.point(axes_row + 3 * k)))));
+  }
+  const V middle = dot(w, block.point(centre));
+  // Bezier points of the quarters, those that are no means of others.
+  V h[6] = {hn::Zero(Tag())};
+  for (std::size_t k = 1; k < 6; ++k) h[k] = dot(w, block.point(net + 3 * (k - 1)));
+  V least = hn::Min(hn::Min(h[0], h[1]), h[2]), most = hn::Max(hn::Max(h[0], h[1]), h[2]);
+  const V inner = hn::Add(hn::Add(h[3], h[4]), h[5]), half = set(0.5), quarter = set(0.25);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const V inside = hn::Mul(quarter, hn::Add(h[k], inner));
+    least = hn::Min(least, hn::Min(inside, hn::Mul(half, hn::Add(hn::Min(h[k], h[next]), h[3 + k]))));
+    most = hn::Max(most, hn::Max(inside, hn::Mul(half, hn::Add(hn::Max(h[k], h[next]), h[3 + k]))));
+  }
+  const V height = dot(w, block.point(corner));
+  const V off = hn::Add(hn::Mul(hn::Add(error_of(block, w), block.number(slack)), set(1 + 0x1p-42)),
+                        set(17 * underflow_error));
+  return {hn::Max(hn::Sub(middle, reach), hn::Sub(hn::Add(height, least), off)),
+          hn::Min(hn::Add(middle, reach), hn::Add(hn::Add(height, most), off))};
+}
+
+SNUG_FLAT void ExtentsAlong(const Axes& axes, std::span<const SetNumbers> sets,
+                            std::span<const std::uint32_t> which, SetSides* sides, Extent* all) {
+  const std::size_t lanes = hn::Lanes(Tag());
+  Block block;
+  HWY_ALIGN double lane[2][most_lanes];
+  for (std::size_t begin = 0; begin < which.size(); begin += lanes) {
+    const std::size_t here = std::min(lanes, which.size() - begin);
+    block.gather(sets, which.subspan(begin, here));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ExtentV of_set = extent(block, axes[k]);
+      hn::Store(of_set.lower, Tag(), lane[0]);
+      hn::Store(of_set.upper, Tag(), lane[1]);
+      for (std::size_t l = 0; l < here; ++l) {
+        all[k].add({lane[0][l], lane[1][l]});
+        sides[begin + l].lower[k] = static_cast<float>(std::max(lane[0][l], -1e6));
+        sides[begin + l].upper[k] = static_cast<float>(std::min(lane[1][l], 1e6));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace snug::kernels {
+
+HWY_EXPORT(ExtentsAlong);
+
+SetNumbers numbers_of(const FittedSet& set) {
+  SetNumbers numbers{};
+  const Obb& box = set.box;
+  const bool bounded = std::isfinite(box.half.x + box.half.y + box.half.z);
+  if (bounded) {
+    numbers.box = {box.centre - Point3{}, box.axes[0], box.axes[1], box.axes[2], box.half};
+    // The box as a set of inequalities lies in that of the combinations of its axes, made larger by what these lack of
+    // orthonormality; at most 64 roundings.
+    numbers.box_error =
+        128 * unit_roundoff * (max_abs(box.centre - Point3{}) + box.half.x + box.half.y + box.half.z);
+  } else {
+    numbers.box_error = INFINITY;
+  }
+  if (!bounded || !(set.error < INFINITY)) {
+    numbers.slack = INFINITY;
+    return numbers;
+  }
+  double largest = 0;
+  numbers.net[0] = set.net[0] - Point3{};
+  for (std::size_t k = 1; k < 6; ++k) {
+    numbers.net[k] = set.net[k] - set.net[0];
+    largest = std::max(largest, max_abs(numbers.net[k]));
+  }
+  numbers.normal = set.normal;
+  numbers.error = set.error;
+  numbers.normal_error = set.normal_error;
+  const double across_sq = set.error * set.error - set.normal_error * set.normal_error;
+  // Any is right.
+  numbers.tilt = across_sq > 0 ? std::min(set.normal_error / std::sqrt(across_sq), 0x1p500) : 0x1p500;
+  numbers.slack = 64 * unit_roundoff * (largest + max_abs(numbers.net[0]));
+  return numbers;
+}
+
+std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetNumbers> sets,
+                                    std::span<const std::uint32_t> which, SetSides* sides) {
+  std::array<Extent, 3> all;
+  HWY_DYNAMIC_DISPATCH(ExtentsAlong)(axes, sets, which, sides, all.data());
+  return all;
+}
+
+}  // namespace snug::kernels
+#endif
