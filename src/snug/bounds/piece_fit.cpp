@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include <snug/bounds/part_kernels.h>
@@ -157,12 +156,12 @@ PieceFit answer(const Patch& patch, const PatchFrame& frame, const PartShape* co
 void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
   split_all();
   const std::size_t parts = parts_of_each_ * patches_.size();
+  std::vector<std::uint64_t> by_kind(parts);
+  for (std::size_t i = 0; i < parts; ++i) by_kind[i] = std::uint64_t{part(i).kind->id().value()} << 32 | i;
+  std::sort(by_kind.begin(), by_kind.end());
   order_.resize(parts);
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const auto x = part(a).kind->id().index(), y = part(b).kind->id().index();
-    return x != y ? x < y : a < b;
-  });
+  std::transform(by_kind.begin(), by_kind.end(), order_.begin(),
+                 [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
   shapes_.resize(parts);
   frames_.resize(patches_.size());
   bounds_.resize(parts);

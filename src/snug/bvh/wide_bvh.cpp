@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -186,6 +185,7 @@ class WideBvh::Builder {
         leaves_((items.size() + leaf_size - 1) / leaf_size),
         sides_(items.size()),
         keys_(items.size()),
+        sorted_keys_(items.size()),
         moved_(items.size()) {
     numbers_.reserve(sets.size());
     for (const FittedSet& set : sets) numbers_.push_back(kernels::numbers_of(set));
@@ -299,20 +299,36 @@ class WideBvh::Builder {
     }
   }
 
-  // Along each axis.
+  // Along each axis, by two digits of the middles: their order is a choice.
   void sort(const Part& part) {
+    constexpr unsigned digit_bits = 8;
+    constexpr float largest = (1u << 2 * digit_bits) - 1;
     for (std::size_t k = 0; k < 3; ++k) {
+      float lower = INFINITY, upper = -INFINITY;
       for (std::size_t i = part.begin; i < part.end; ++i) {
-        // Bits of floats are in their order as integers if those of negative ones are turned over.
-        const auto bits = std::bit_cast<std::uint32_t>(sides_[i].lower[k] + sides_[i].upper[k]);
-        const std::uint32_t key = bits ^ ((bits >> 31) != 0 ? ~0u : 1u << 31);
-        keys_[i] = std::uint64_t{key} << 32 | i;
+        const float twice = sides_[i].lower[k] + sides_[i].upper[k];
+        lower = std::min(lower, twice);
+        upper = std::max(upper, twice);
       }
-      std::sort(keys_.begin() + static_cast<std::ptrdiff_t>(part.begin),
-                keys_.begin() + static_cast<std::ptrdiff_t>(part.end));
+      const float scale = upper > lower ? std::min(largest / (upper - lower), 0x1p100F) : 0;
+      for (std::size_t i = part.begin; i < part.end; ++i) {
+        const float height = (sides_[i].lower[k] + sides_[i].upper[k] - lower) * scale;
+        keys_[i] = std::uint64_t{static_cast<std::uint32_t>(std::min(height, largest))} << 32 | i;
+      }
+      sort_by_digit<digit_bits>(32, part, keys_, sorted_keys_);
+      sort_by_digit<digit_bits>(32 + digit_bits, part, sorted_keys_, keys_);
       for (std::size_t i = part.begin; i < part.end; ++i)
         sorted_[k][i] = static_cast<std::uint32_t>(keys_[i]);
     }
+  }
+  template <unsigned bits>
+  static void sort_by_digit(unsigned first_bit, const Part& part, const std::vector<std::uint64_t>& from,
+                            std::vector<std::uint64_t>& to) {
+    const auto digit = [first_bit](std::uint64_t key) { return key >> first_bit & ((1u << bits) - 1); };
+    std::array<std::uint32_t, (1u << bits) + 1> begins{};
+    for (std::size_t i = part.begin; i < part.end; ++i) ++begins[digit(from[i]) + 1];
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    for (std::size_t i = part.begin; i < part.end; ++i) to[part.begin + begins[digit(from[i])]++] = from[i];
   }
 
   std::span<const FittedSet> sets_;
@@ -324,7 +340,7 @@ class WideBvh::Builder {
   std::vector<kernels::SetSides>
       sides_;  // of items, along the axes of the last box that was fitted around them
   std::array<std::vector<std::uint32_t>, 3> sorted_;  // places of items along each axis, part by part
-  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint64_t> keys_, sorted_keys_;
   std::vector<std::pair<kernels::SetSides, std::uint32_t>> moved_;
   std::vector<float> left_;
 };
