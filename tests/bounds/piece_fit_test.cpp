@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <snug/bounds/bounding_points.h>
 #include <snug/bounds/enclosure.h>
+#include <snug/bounds/part_kernels.h>
 #include <snug/patch/evaluate.h>
 #include <testing/containment.h>
 #include <testing/counts.h>
@@ -14,6 +15,7 @@
 #include <testing/scheme_surfaces.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <vector>
@@ -177,6 +179,31 @@ TEST(piece_fit, reaches_as_far_along_its_axes_as_it_says) {
   }
   EXPECT_GT(samples, testing::fewer(20'000));
   EXPECT_GT(near, samples / 20);
+}
+
+// The direction is one of length 1, or zero: where the quadratic's corners lie on a line, or too close for squares.
+TEST(piece_fit, has_no_direction_across_corners_on_a_line) {
+  const auto direction_of = [](const std::array<Vector3, 6>& quadratic) {
+    const PartShape shape{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, quadratic};
+    PatchFrame frame;
+    kernels::make_frames({&shape, 1}, 1, {&frame, 1});
+    EXPECT_TRUE(frame.good);
+    return frame.direction;
+  };
+  const std::array<Vector3, 6> round{
+      {{0, 0, 0}, {1, 0, 0.1}, {0, 1, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}}};
+  const auto with_third = [&](const Vector3& third) {
+    std::array<Vector3, 6> changed = round;
+    changed[1] = {1, 0, 0};
+    changed[2] = third;
+    return changed;
+  };
+  EXPECT_NEAR(length(direction_of(round)), 1, 1e-15);
+  EXPECT_EQ(direction_of(with_third({0.25, 0, 0})), Vector3{});
+  for (int exponent = -40; exponent > -1074; exponent -= 7) {
+    const double size = length(direction_of(with_third({0.25, std::ldexp(1.1, exponent), 0})));
+    EXPECT_TRUE(size == 0 || std::fabs(size - 1) < 1e-15) << exponent << ", " << size;
+  }
 }
 
 TEST(piece_fit, has_no_answer_for_what_has_no_triangle) {

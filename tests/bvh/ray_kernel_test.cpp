@@ -196,6 +196,58 @@ TEST(ray_kernel, segments_that_meet_a_quadratic_triangle_are_found) {
   EXPECT_GT(missed, 10'000u);
 }
 
+// Squares of single precision underflow from 2^-75 on, products from 2^-126.
+TEST(ray_kernel, sides_may_be_shorter_than_what_single_precision_has_squares_for) {
+  std::mt19937_64 random(95);
+  std::size_t near_ones = 0, missed = 0;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    const float side =
+        static_cast<float>(std::ldexp(1 + std::fabs(unit(random)), -static_cast<int>(random() % 149)));
+    const double error = random() % 4 == 0 ? 0 : std::ldexp(1.0, -static_cast<int>(random() % 30));
+    // Two corners that are hardly apart, at the node's origin, which has the finest numbers; the third, too, or not.
+    std::array<float, 18> net{};
+    const std::size_t k = random() % 3, across = random() % 3, tip = (k + 2) % 3;
+    const auto put = [&](std::size_t point, const Vector3& v) {
+      for (std::size_t a = 0; a < 3; ++a) net[3 * point + a] = static_cast<float>(v[a]);
+    };
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (a == across || random() % 2 == 0)
+        net[3 * ((k + 1) % 3) + a] = side * static_cast<float>(unit(random));
+    }
+    const double far = random() % 4 == 0 ? static_cast<double>(side) : 1.0;
+    put(tip, far * any_direction(random));
+    const auto corner = [&](std::size_t i) {
+      return Vector3{static_cast<double>(net[3 * i]), static_cast<double>(net[3 * i + 1]),
+                     static_cast<double>(net[3 * i + 2])};
+    };
+    for (std::size_t i = 0; i < 3; ++i) put(3 + i, 0.5 * (corner(i) + corner((i + 1) % 3)));
+    float reach = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+      reach = std::max(reach, std::fabs(net[3 * i]) + std::fabs(net[3 * i + 1]) + std::fabs(net[3 * i + 2]));
+    }
+    std::vector<Point3> points;
+    for (int i = 0; i <= 8; ++i) {
+      for (int j = 0; i + j <= 8; ++j) {
+        points.push_back(Point3{} + at(net, i / 8.0, j / 8.0) + (0.999 * error) * any_direction(random));
+      }
+    }
+    const Segments segments = any_segments(random, points, std::max(far, error));
+    const kernels::Meeting met =
+        kernels::segments_meeting({net.data(), float_up(error), reach}, segments.seen({}));
+    for (std::size_t i = 0; i < 8; ++i) {
+      const bool near = (met.near >> i & 1u) != 0;
+      (near ? near_ones : missed)++;
+      if (near) continue;
+      for (const Point3& p : points) {
+        ASSERT_GT(nearest(segments, i, p).distance + 1e-15, segments.slack[i])
+            << trial << ", segment " << i << ", side " << side << ", error " << error;
+      }
+    }
+  }
+  EXPECT_GT(near_ones, 10'000u);
+  EXPECT_GT(missed, 10'000u);
+}
+
 TEST(ray_kernel, results_are_the_same_on_every_instruction_set) {
   std::vector<std::vector<std::uint32_t>> results;
   testing::EachInstructionSet().run([&](const char*) {

@@ -22,6 +22,8 @@ namespace {
 constexpr double tiny = 0x1p-500, generous = 1 + 0x1p-40;
 // Of quadratics, of their parts, and of differences from these: roundings a coordinate.
 constexpr std::size_t quadratic_roundings = 256;
+// Of vectors with a smaller square no direction is taken: too much of it may be lost by underflow.
+constexpr double least_square = 0x1p-900;
 // What axes may lack to be orthonormal.
 constexpr double max_stretch = 0x1p-46;
 
@@ -366,7 +368,10 @@ void MakeFrames(std::span<const PartShape> parts, std::size_t parts_of_each, std
     hand_out(d, here, t.t1, to(&PatchFrame::t1));
     hand_out(d, here, t.t2, to(&PatchFrame::t2));
     hand_out(d, here, t.n, to(&PatchFrame::n));
-    hand_out(d, here, scaled(hn::Div(one, hn::Sqrt(dot(area, area))), area), to(&PatchFrame::direction));
+    const V square = dot(area, area);
+    const V over_length =
+        hn::IfThenElseZero(hn::Ge(square, hn::Set(d, least_square)), hn::Div(one, hn::Sqrt(square)));
+    hand_out(d, here, scaled(over_length, area), to(&PatchFrame::direction));
     const std::pair<double PatchFrame::*, V> numbers[] = {
         {&PatchFrame::l0, t.l0},
         {&PatchFrame::l1, t.l1},
@@ -388,7 +393,7 @@ void MakeFrames(std::span<const PartShape> parts, std::size_t parts_of_each, std
         {&PatchFrame::quadratic_size, size}};
     for (const auto& [field, v] : numbers) hand_out(d, here, v, to(field));
     auto good = hn::And(well_shaped(d, t), hn::Le(t.stretch, hn::Set(d, max_stretch)));
-    good = hn::And(good, hn::Lt(hn::Add(size, dot(area, area)), hn::Set(d, INFINITY)));
+    good = hn::And(good, hn::Lt(hn::Add(size, square), hn::Set(d, INFINITY)));
     const std::uint32_t mask = bits(d, good);
     for (std::size_t l = 0; l < here; ++l) out[begin + l].good = (mask >> l & 1) != 0;
   }

@@ -39,7 +39,7 @@ struct PatchFrame {
   Vector3 t1, t2, n;                              ///< rows of the frame
   double l0, l1, l2, xc, yc, d1x, d1y, d2x, d2y;  ///< the triangle in its plane
   double axis_x, axis_y, middle;  ///< the longest edge's direction; height of the base above the corners
-  Vector3 direction;              ///< across the quadratic
+  Vector3 direction;              ///< across the quadratic, of length 1; or zero
   std::array<std::array<Vector3, 6>, 4> quadratic;  ///< over each part
   double longest, deviation, amplify, stretch;      ///< of the triangle
   double quadratic_size;                            ///< largest |coordinate| of the quadratic

@@ -15,6 +15,8 @@ using V = hn::Vec<Tag>;
 
 // More than what roundings to single precision can do to a gap, as a part of all that is involved.
 constexpr float roundings = 64 * 0x1p-24F;
+// More than what products lose that underflow, of a length and of a square.
+constexpr float lost = 0x1p-118F;
 
 // A segment, or one a lane.
 struct Segment {
@@ -114,6 +116,7 @@ Meeting beside(const NearQuadratic& set, const SeenSegments& segments) {
                           hn::Add(hn::Add(hn::Abs(middle.x), hn::Abs(middle.y)), hn::Abs(middle.z)));
     const V rounding = hn::Add(hn::Mul(hn::Set(d, roundings), far), some(segments.slack));
     const V error = hn::Set(d, (1 + 0x1p-20F) * set.error), zero = hn::Zero(d);
+    const V lost_here = hn::Mul(hn::Set(d, lost), hn::Add(hn::Set(d, 1.0F), far));
     Vec3<V> points[6];
     for (std::size_t k = 0; k < 6; ++k) {
       points[k] = sub(Vec3<V>{hn::Set(d, net[3 * k]), hn::Set(d, net[3 * k + 1]), hn::Set(d, net[3 * k + 2])},
@@ -123,8 +126,9 @@ Meeting beside(const NearQuadratic& set, const SeenSegments& segments) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3<V> side{hn::Set(d, sides[k][0]), hn::Set(d, sides[k][1]), hn::Set(d, sides[k][2])};
       const Vec3<V> normal = cross(along, side);
-      const V size = hn::Sqrt(dot(normal, normal));
-      const V least = hn::Add(hn::Mul(size, error), hn::Mul(hn::Set(d, sizes[k]), rounding));
+      const V size = hn::Sqrt(hn::Add(dot(normal, normal), hn::Set(d, lost)));
+      const V least =
+          hn::Add(hn::Add(hn::Mul(size, error), hn::Mul(hn::Set(d, sizes[k]), rounding)), lost_here);
       // Of Bezier points; the side's other end is as high.
       const V end = dot(normal, points[k]), tip = dot(normal, points[(k + 2) % 3]);
       const V bend = dot(normal, points[3 + k]), second = dot(normal, points[3 + (k + 1) % 3]),
