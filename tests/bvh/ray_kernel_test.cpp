@@ -7,6 +7,7 @@
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
 #include <testing/boxes.h>
+#include <testing/counts.h>
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
 
@@ -80,7 +81,7 @@ Nearest nearest(const Segments& s, std::size_t i, const Point3& p) {
 TEST(ray_kernel, boxes_that_a_segment_meets_are_found) {
   std::mt19937_64 random(91);
   std::size_t met = 0, missed = 0;
-  for (int trial = 0; trial < 20'000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
     const double size = std::ldexp(1.0, -static_cast<int>(random() % 20));
     std::vector<std::vector<Point3>> clouds;
     std::vector<Obb> boxes;
@@ -114,8 +115,8 @@ TEST(ray_kernel, boxes_that_a_segment_meets_are_found) {
       }
     }
   }
-  EXPECT_GT(met, 100'000u);
-  EXPECT_GT(missed, 100'000u);
+  EXPECT_GT(met, testing::fewer(100'000));
+  EXPECT_GT(missed, testing::fewer(100'000));
 }
 
 TEST(ray_kernel, what_is_not_finite_is_met) {
@@ -145,7 +146,7 @@ TEST(ray_kernel, segments_that_meet_a_quadratic_triangle_are_found) {
   std::mt19937_64 random(93);
   constexpr int steps = 16;
   std::size_t inside = 0, beside = 0, missed = 0;
-  for (int trial = 0; trial < 20'000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
     const double size = std::ldexp(1.0, -static_cast<int>(random() % 20));
     // Nearly flat, bent, folded, a needle, a line, a point.
     const double bent = std::array{0.01, 0.3, 2.0}[random() % 3],
@@ -191,16 +192,16 @@ TEST(ray_kernel, segments_that_meet_a_quadratic_triangle_are_found) {
       }
     }
   }
-  EXPECT_GT(inside, 10'000u);
-  EXPECT_GT(beside, 10'000u);
-  EXPECT_GT(missed, 10'000u);
+  EXPECT_GT(inside, testing::fewer(10'000));
+  EXPECT_GT(beside, testing::fewer(10'000));
+  EXPECT_GT(missed, testing::fewer(10'000));
 }
 
 // Squares of single precision underflow from 2^-75 on, products from 2^-126.
 TEST(ray_kernel, sides_may_be_shorter_than_what_single_precision_has_squares_for) {
   std::mt19937_64 random(95);
   std::size_t near_ones = 0, missed = 0;
-  for (int trial = 0; trial < 20'000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
     const float side =
         static_cast<float>(std::ldexp(1 + std::fabs(unit(random)), -static_cast<int>(random() % 149)));
     const double error = random() % 4 == 0 ? 0 : std::ldexp(1.0, -static_cast<int>(random() % 30));
@@ -244,8 +245,8 @@ TEST(ray_kernel, sides_may_be_shorter_than_what_single_precision_has_squares_for
       }
     }
   }
-  EXPECT_GT(near_ones, 10'000u);
-  EXPECT_GT(missed, 10'000u);
+  EXPECT_GT(near_ones, testing::fewer(10'000));
+  EXPECT_GT(missed, testing::fewer(10'000));
 }
 
 TEST(ray_kernel, results_are_the_same_on_every_instruction_set) {

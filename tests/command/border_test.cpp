@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <testing/counts.h>
 #include <unistd.h>
 #include <algorithm>
 #include <chrono>
@@ -258,7 +259,7 @@ TEST(border, memory_that_is_not_enough_is_status_4_on_every_thread) {
   SNUG_SKIP_UNDER_SANITIZERS();
   const TemporaryFolder folder;
   int answered = 0, refused = 0;
-  for (rlim_t mib = 24; mib <= 300; mib += mib / 8) {
+  for (rlim_t mib = 24; mib <= 300; mib += mib / (testing::long_check() ? 8 : 3)) {
     const Surroundings small{[mib] {
                                const rlimit memory{mib << 20, mib << 20};
                                setrlimit(RLIMIT_AS, &memory);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <testing/counts.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -193,7 +194,7 @@ TEST_F(pose_files, are_answered_as_single_poses_for_any_number_of_threads) {
       EXPECT_EQ(answer(command, {"--poses", file_, "--threads", threads}), all);
     EXPECT_EQ(answer(command, {"--poses", "-"}, text_), all);
     EXPECT_EQ(all["results"][1]["line"], 4);
-    for (std::size_t i = 0; i < 40; i += 3) {
+    for (std::size_t i = 0; i < 40; i += testing::fewer(4) == 4 ? 3 : 13) {
       const json& one = all["results"][i];
       const auto text = [&](const char* key) { return text_of(one[key].get<std::array<double, 12>>()); };
       const json alone = answer(command, {"--place-a", text("place_a"), "--place-b", text("place_b")});

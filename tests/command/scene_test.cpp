@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <testing/counts.h>
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -116,6 +117,8 @@ TEST_F(scenes, are_answered_as_pairs_are) {
   std::size_t next = 0, near = 0;
   for (std::size_t a = 0; a < 14; ++a) {
     for (std::size_t b = a + 1; b < 14; ++b) {
+      const Json& other = found["results"][next++];
+      if (!testing::has_turn(next)) continue;
       const auto words = [&](std::size_t part, const char* key) {
         std::string text;
         for (const Json& x : scene["parts"][part]["place"][key]) text += x.dump() + " ";
@@ -124,7 +127,6 @@ TEST_F(scenes, are_answered_as_pairs_are) {
       Json one = answer({"collide", scene["parts"][a]["mesh"], scene["parts"][b]["mesh"], "--margin", "0.02",
                          "--move-a", words(a, "move"), "--rotate-a", words(a, "rotate"), "--move-b",
                          words(b, "move"), "--rotate-b", words(b, "rotate")});
-      const Json& other = found["results"][next++];
       ASSERT_EQ(other["a"], scene["parts"][a]["name"]);
       ASSERT_EQ(other["b"], scene["parts"][b]["name"]);
       ASSERT_EQ(other["verdict"], one["verdict"]);
@@ -137,7 +139,7 @@ TEST_F(scenes, are_answered_as_pairs_are) {
       for (const char* key : {"distance", "witness", "witness_at"}) EXPECT_EQ(other[key], one[key]) << key;
     }
   }
-  EXPECT_GT(near, 10u);
+  EXPECT_GT(near, testing::fewer(4) == 4 ? 10u : 0u);
   EXPECT_LT(near, next);
 }
 
@@ -305,7 +307,7 @@ TEST_F(journals, go_on_from_any_torn_end) {
   EXPECT_EQ(answer(words()), expected);
   const std::string whole = text();
   std::mt19937_64 random(8);
-  for (int trial = 0; trial < 12; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(12)); ++trial) {
     std::string torn = whole.substr(0, random() % whole.size());
     if (trial % 3 == 1) torn += "\t12\n";
     if (trial % 3 == 2) {

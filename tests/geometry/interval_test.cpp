@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <mpfr.h>
+#include <testing/counts.h>
 
 #include <cmath>
 #include <random>
@@ -69,7 +70,7 @@ TEST(interval, sines_cosines_and_roots_contain_the_exact_ones) {
 
 TEST(interval, operations_contain_the_exact_results_of_their_ends) {
   std::mt19937_64 random(1);
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
     const Interval a = any_interval(random), b = any_interval(random);
     for (const double x : {a.lower, a.upper, middle(a)}) {
       for (const double y : {b.lower, b.upper, middle(b)}) {
@@ -91,7 +92,7 @@ TEST(interval, operations_contain_the_exact_results_of_their_ends) {
 
 TEST(interval, middle_and_radius_cover_the_ends) {
   std::mt19937_64 random(2);
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
     const Interval a = any_interval(random);
     EXPECT_GE(radius(a), std::fmax(a.upper - middle(a), middle(a) - a.lower));
   }
@@ -129,7 +130,7 @@ TEST(interval, sines_of_degrees_contain_the_exact_ones) {
   std::mt19937_64 random(7);
   const std::vector<double> ends{0,   1e-320, 45,  -45, 90, 135,   180,   225,
                                  270, 315,    360, 30,  60, 1e300, -1e17, 44.999999999999993};
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(20'000)); ++trial) {
     const double angle = trial < 16 ? ends[trial] : std::uniform_real_distribution<double>(-800, 800)(random);
     const SineCosine found = of_degrees(angle);
     Exact radians(angle), pi(0), sine(0), cosine(0);

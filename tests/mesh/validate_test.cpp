@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/mesh/topology.h>
+#include <testing/counts.h>
 #include <testing/twins.h>
 
 #include <initializer_list>
@@ -86,8 +87,8 @@ TEST(defects_of_elements, are_all_but_legal_ones_of_a_manifold_mesh) {
     }
     return texts;
   };
-  int manifold = 0, faulty = 0, twice = 0;
-  for (int trial = 0; trial < 40'000; ++trial) {
+  std::uint64_t manifold = 0, faulty = 0, twice = 0;
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(40'000)); ++trial) {
     const std::size_t points = 3 + random() % 6;
     ControlMesh mesh = mesh_of(points, {});
     for (std::size_t faces = 1 + random() % 6; faces > 0; --faces) {
@@ -104,9 +105,9 @@ TEST(defects_of_elements, are_all_but_legal_ones_of_a_manifold_mesh) {
     ASSERT_EQ(all, serious(defects_of_elements(mesh, topology))) << trial;
     twice += topology.uniform_size() == 3 && !all.empty();
   }
-  EXPECT_GT(manifold, 1000);
-  EXPECT_GT(faulty, 1000);
-  EXPECT_GT(twice, 30);
+  EXPECT_GT(manifold, testing::fewer(1000));
+  EXPECT_GT(faulty, testing::fewer(1000));
+  EXPECT_GT(twice, testing::fewer(30));
 }
 
 TEST(summary, lists_ten_and_counts_the_rest) {

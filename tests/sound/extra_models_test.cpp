@@ -9,6 +9,7 @@
 #include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <testing/containment.h>
+#include <testing/counts.h>
 #include <testing/surfaces.h>
 
 #include <cstdlib>
@@ -21,7 +22,8 @@
 namespace snug::extra_models_test {
 namespace {
 
-constexpr std::size_t max_faces = 8000;  // what the twin samples in a few seconds
+// What the twin samples in a few seconds.
+std::size_t max_faces() { return testing::long_check() ? 8000 : 3000; }
 
 // Checks samples of every face against the union of its pieces; returns how many there were.
 std::size_t check(const Surface& surface, const BoundOptions& options,
@@ -52,7 +54,7 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
     if (!path.ends_with(".obj") && !path.ends_with(".off")) continue;
     try {
       const ControlMesh mesh = read_mesh(path);
-      if (mesh.face_count() > max_faces) continue;
+      if (mesh.face_count() > max_faces()) continue;
       SchemeOptions rules{natural_scheme(mesh), mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner)};
       const Surface surface = testing::public_surface(mesh, rules);
       // The twin knows plain Loop surfaces.
@@ -61,7 +63,9 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
       if (rules.scheme != Scheme::loop || tagged || !surface.data()->limit().topology().is_manifold())
         continue;
       const auto samples =
-          oracle::sample_uniform(testing::twin_mesh(mesh, rules.boundary), mesh.face_count() > 1500 ? 1 : 3);
+          oracle::sample_uniform(testing::twin_mesh(mesh, rules.boundary), mesh.face_count() > 1500 ? 1
+                                                                           : testing::long_check()  ? 3
+                                                                                                    : 2);
       BoundOptions options;
       points += check(surface, options, samples, path);
       options.error = 0.01 * surface.size();

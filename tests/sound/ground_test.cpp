@@ -100,7 +100,8 @@ class Checks {
     std::uint64_t most = usual;
     for (std::size_t s = 0; s < 2; ++s)
       if (side(s).has_many())
-        most = std::min<std::uint64_t>(most, side(s).bounds() == BoundMethod::table ? 15 : 300);
+        most = std::min<std::uint64_t>(
+            most, (side(s).bounds() == BoundMethod::table ? 15 : 300) / (testing::long_check() ? 1 : 3));
     return {.max_splits = most};
   }
 
@@ -117,7 +118,10 @@ class Checks {
   }
 
   /// Of the twin: much now and then.
-  [[nodiscard]] std::size_t effort() const { return trial_->number % 10 == 3 ? 3000 : 400; }
+  [[nodiscard]] std::size_t effort() const {
+    const std::size_t usual = trial_->number % 10 == 3 ? 3000 : 400;
+    return testing::long_check() ? usual : usual / 3;
+  }
   [[nodiscard]] ContactBounds contact(const ContactGoal& goal) {
     return contact_bounds(*side(0).twin, trial_->places[0], *side(1).twin, trial_->places[1], goal);
   }

@@ -88,6 +88,10 @@ TEST(near, verdicts_are_those_of_refined_meshes) {
             }
             const double tolerance = 0.08 * std::exp2(3 * unit(random)),
                          radius = (2.5 + 2 * unit(random)) * tolerance;
+            // Half of the combinations have all pairs.
+            const bool odd = (n == 5) != ((gap > 0.1) != (shake > 0));
+            if (odd == (scheme == Scheme::loop || scheme == Scheme::doo_sabin) && !testing::long_check())
+              continue;
             const SelfContact found =
                 self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}),
                              {.within = tolerance, .radius = radius}, {.max_splits = 300'000});

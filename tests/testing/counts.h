@@ -15,6 +15,19 @@ namespace snug::testing {
 #endif
 }
 
+/// Is case `number` to be tried? All are but for sanitizers, which take every fifth.
+[[nodiscard]] constexpr bool has_turn(std::uint64_t number) {
+#ifdef SNUG_SANITIZED
+  return number % 5 == 0;
+#else
+  static_cast<void>(number);
+  return true;
+#endif
+}
+
+/// Is this the long check, where SNUG_TIMES is set? It tries all combinations, where the usual one tries all pairs by turns.
+[[nodiscard]] inline bool long_check() { return std::getenv("SNUG_TIMES") != nullptr; }
+
 /// The number that the environment gives, or the usual one, SNUG_TIMES times as large if that is set, or fewer.
 [[nodiscard]] inline std::uint64_t number_of(const char* variable, std::uint64_t usual) {
   if (const char* const text = std::getenv(variable)) return std::strtoull(text, nullptr, 10);

@@ -11,6 +11,7 @@
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/distance.h>
+#include <testing/counts.h>
 #include <testing/ground_trials.h>
 #include <testing/surfaces.h>
 #include <testing/tagged.h>
@@ -663,7 +664,7 @@ GroundTrial GroundTrials::make(std::uint64_t number) {
                                       : family == 6 ? 0.1 * size
                                                     : 100 * reach));
   oracle::ContactGoal goal;
-  goal.effort = 800;
+  goal.effort = long_check() ? 800 : 300;
   goal.precision = {std::max(0.1 * trial.tolerance, 1e-5 * size), 1e-2};
   const auto bounds = [&] {
     return contact_bounds(*sides_[0].twin, trial.places[0], *sides_[1].twin, trial.places[1], goal);
@@ -674,7 +675,7 @@ GroundTrial GroundTrials::make(std::uint64_t number) {
     const double target = std::max(trial.tolerance, 1e-5 * size) * dice.size(0.3, 3);
     for (int step = 0; step < 6; ++step) {
       oracle::ContactGoal rough = goal;
-      rough.effort = 400;
+      rough.effort = long_check() ? 400 : 100;
       rough.precision = {0.1 * target, 0.03};
       const oracle::ContactBounds found =
           contact_bounds(*sides_[0].twin, trial.places[0], *sides_[1].twin, trial.places[1], rough);

@@ -74,7 +74,9 @@ inline void expect_together_as_alone(const Surface& surface, const std::string& 
         (alone.certain_hit() ? counts.hits : alone.certain_miss() ? counts.misses : counts.unsure)++;
         ASSERT_EQ(alone.certain_hit(), one.certain_hit()) << which;
         ASSERT_EQ(alone.certain_miss(), one.certain_miss()) << which;
-        if (i % 8 == 0 && sort % 5 != 0) ASSERT_FALSE(one.certain_miss()) << which;
+        if (i % 8 == 0 && sort % 5 != 0) {
+          ASSERT_FALSE(one.certain_miss()) << which;
+        }
         if (query == RayQuery::any) continue;
         ASSERT_EQ(alone.outcome, one.outcome) << which;
         ASSERT_EQ(alone.hits.size(), one.hits.size()) << which;
