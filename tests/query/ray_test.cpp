@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <support/error.h>
+#include <support/point.h>
 #include <testing/places.h>
 #include <testing/ray_bundles.h>
 
@@ -93,6 +94,66 @@ TEST(trace, says_where_it_cannot_tell) {
   ASSERT_FALSE(touching.hits.empty());
   EXPECT_FALSE(touching.certain_hit());
   EXPECT_TRUE(touching.hits[0].t.contains(0.5));
+}
+
+// Whole numbers, so that rays lie in the facet's plane exactly: the answer is where they are on the facet, not all of it.
+TEST(trace, in_the_plane_of_a_facet_is_the_chord) {
+  std::mt19937_64 random(9);
+  const auto whole = [&](int most) {
+    return static_cast<double>(static_cast<int>(random() % (2 * most + 1)) - most);
+  };
+  int chords = 0, missed = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Point3 corner{whole(9), whole(9), whole(9)};
+    const Vector3 e{whole(9), whole(9), whole(9)}, f{whole(9), whole(9), whole(9)};
+    if (length(cross(e, f)) < 20) continue;
+    ControlMesh mesh;
+    mesh.points = {corner, corner + e, corner + f, corner + e + f};
+    const bool quad = trial % 3 == 0;  // else a triangle
+    quad ? mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(3), VertexId(2)})
+         : mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
+    const Surface surface(mesh, {.scheme = quad ? Scheme::bilinear : Scheme::flat});
+    const double u = whole(4) / 4, v = whole(4) / 4, du = whole(5), dv = whole(5);
+    if (du == 0 && dv == 0) continue;
+    // The part of u + t du, v + t dv with 0 <= u, v and u + v <= 1, or both up to 1.
+    double first = -50, last = 50, nearly = 0;
+    const auto keep = [&](double at, double by) {  // at + t by >= 0
+      if (by > 0) first = std::max(first, -at / by);
+      if (by < 0) last = std::min(last, -at / by);
+      if (by == 0 && at < 0) last = -INFINITY;
+      if (by == 0 && at == 0) nearly = 1;
+    };
+    keep(u, du);
+    keep(v, dv);
+    if (quad) {
+      keep(1 - u, -du);
+      keep(1 - v, -dv);
+    } else {
+      keep(1 - u - v, -du - dv);
+    }
+    const Ray ray{corner + u * e + v * f, du * e + dv * f, -50, 50};
+    const RayHits found = snug::ray(surface, ray, {.query = RayQuery::all});
+    if (last < first - 1e-3) {
+      ++missed;
+      EXPECT_TRUE(found.certain_miss()) << trial;
+    } else if (last > first) {
+      ++chords;
+      ASSERT_FALSE(found.hits.empty()) << trial;
+      double lower = INFINITY, upper = -INFINITY;
+      for (const RayHit& hit : found.hits) {
+        lower = std::min(lower, hit.t.lower);
+        upper = std::max(upper, hit.t.upper);
+      }
+      EXPECT_LE(lower, first + 1e-12) << trial;
+      EXPECT_GE(upper, last - 1e-12) << trial;
+      if (nearly == 0) {  // along an edge all depends on the tube's width
+        EXPECT_GE(lower, first - 1e-3) << trial;
+        EXPECT_LE(upper, last + 1e-3) << trial;
+      }
+    }
+  }
+  EXPECT_GT(chords, 100);
+  EXPECT_GT(missed, 50);
 }
 
 TEST(trace, knows_the_ends_of_segments) {

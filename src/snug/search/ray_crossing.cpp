@@ -14,6 +14,8 @@ namespace {
 constexpr unsigned max_newton_steps = 4;
 // Share of a step that bending may take or add.
 constexpr double max_bent = 0.8;
+// Extent along the line, as a multiple of errors across it, from which on a piece is cut to the tube around it.
+constexpr double max_slant = 256;
 // Factor that covers a few roundings of a bound.
 constexpr double ray_slack = 1 + 0x1p-40;
 
@@ -172,25 +174,31 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
     if (radius < 2 * blur &&
         (bend_along <= rest_along || result.along.upper - result.along.lower <= enough)) {
       result.limited_by_errors = true;
-      return result;
+      break;
     }
     at = result.at;
     farthest = std::min(
         1.0, ray_slack * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + radius + rounding));
   }
-  if (result.state != LinePieceCrossing::State::bent) return result;
+  // Seen as narrow as errors: the line may be along it.
+  const bool along = result.state == LinePieceCrossing::State::unsure &&
+                     result.along.upper - result.along.lower > max_slant * off;
+  if (result.state != LinePieceCrossing::State::bent && !along) return result;
+  const Extent near = chord(place, reach);
+  if (along) {
+    result.along = {std::max(result.along.lower, near.lower), std::min(result.along.upper, near.upper)};
+    if (result.along.upper < result.along.lower) result.state = LinePieceCrossing::State::none;
+    return result;
+  }
   // By lines between the piece and the ray: across its edges, and from its corners.
   Offset2 middle;
-  result.along = {};
   double nearest = INFINITY;
   for (std::size_t k = 0; k < 6; ++k) {
-    result.along.add(net_[k].z);
     middle.x += net_[k].x / 6 - place.x / 6;
     middle.y += net_[k].y / 6 - place.y / 6;
   }
-  result.along.lower -= error_ * ray_slack + 4 * unit_roundoff * std::fabs(result.along.lower);
-  result.along.upper += error_ * ray_slack + 4 * unit_roundoff * std::fabs(result.along.upper);
-  bool none = beyond(net_, place, middle, off);
+  result.along = near;
+  bool none = near.upper < near.lower || beyond(net_, place, middle, off);
   for (std::size_t k = 0; k < 3 && !none; ++k) {
     const Vector3 &p = net_[k], &q = net_[(k + 1) % 3];
     const Offset2 corner{p.x - place.x, p.y - place.y}, normal{p.y - q.y, q.x - p.x};
@@ -204,6 +212,41 @@ LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double
   }
   if (none) result.state = LinePieceCrossing::State::none;
   return result;
+}
+
+Extent SeenPiece::chord(const Offset2& place, double reach) const {
+  double bend = 0, bend_along = 0, largest = std::fabs(place.x) + std::fabs(place.y);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 &p = net_[k], &q = net_[(k + 1) % 3];
+    const Vector3 off = net_[3 + k] - 0.5 * (p + q);
+    bend = std::max(bend, max_abs2(off));
+    bend_along = std::max(bend_along, std::fabs(off.z));
+    largest = std::max(largest, max_abs(p));
+  }
+  const double rounding = 64 * unit_roundoff * largest;
+  const double half = ray_slack * (error_ + reach + bend + rounding),
+               along = ray_slack * (error_ + bend_along + rounding);
+  // The triangle of the corners, cut to a square around the line.
+  std::array<Vector3, 7> polygon{net_[0], net_[1], net_[2]}, rest;
+  std::size_t count = 3;
+  for (unsigned side = 0; side < 4; ++side) {
+    const auto inside = [&](const Vector3& v) {
+      const double from = side < 2 ? v.x - place.x : v.y - place.y;
+      return half + (side % 2 == 0 ? from : -from);
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector3 &p = polygon[i], &q = polygon[(i + 1) % count];
+      const double of_p = inside(p), of_q = inside(q);
+      if (of_p >= 0) rest[kept++] = p;
+      if ((of_p >= 0) != (of_q >= 0)) rest[kept++] = p + of_p / (of_p - of_q) * (q - p);
+    }
+    polygon = rest;
+    count = kept;
+  }
+  Extent extent;
+  for (std::size_t i = 0; i < count; ++i) extent.add(polygon[i].z);
+  return {extent.lower - along, extent.upper + along};
 }
 
 bool SeenPiece::passes_side(std::size_t k, const Offset2& place, double reach) const {

@@ -59,6 +59,9 @@ class SeenPiece {
   [[nodiscard]] double width() const;
 
  private:
+  // Holds the part of the piece within `reach` of the line, by the triangle of its corners; empty where there is none.
+  [[nodiscard]] Extent chord(const Offset2& place, double reach) const;
+
   // Bezier points as (across, across, along): corners, then middles of the edges 01, 12, 20.
   std::array<Vector3, 6> net_;
   double error_ = INFINITY;
