@@ -60,8 +60,13 @@ std::vector<Result> find(const Surface& surface, std::span<const Point3> points,
 }
 
 std::string text_of_bounds(double lower, double upper) {
-  const auto down = [](double x) { return x < 0 ? "-" + text_at_most(-x, true) : text_at_most(x); };
-  const auto up = [](double x) { return x < 0 ? "-" + text_at_most(-x) : text_at_most(x, true); };
+  const double within = (upper - lower) / 4;  // an interval that is no wider than it has to be
+  const auto down = [&](double x) {
+    return x < 0 ? "-" + text_at_most(-x, true, within) : text_at_most(x, false, within);
+  };
+  const auto up = [&](double x) {
+    return x < 0 ? "-" + text_at_most(-x, false, within) : text_at_most(x, true, within);
+  };
   return down(lower) + " " + up(upper);
 }
 

@@ -33,7 +33,8 @@ void write_json(JsonWriter& json, const SelfContact& found, std::optional<double
     json.end_array().key("witness").begin_array();
     for (const LimitPoint& point : pair.points) json.value(point.point);
     json.end_array().key("distance").begin_array();
-    json.value(pair.distance.lower).value(pair.distance.upper).end_array().end_object();
+    json.value(pair.distance.lower).value(pair.distance.upper).end_array();
+    json.field("touching", pair.touching).end_object();
   }
   json.end_array().key("stats").begin_object();
   json.field("stars", found.stars).field("pair_tests", found.pair_tests).field("levels", found.levels);
@@ -51,8 +52,9 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
   for (std::size_t i = 0; i < std::min(max_lines, found.pairs.size()); ++i) {
     const SelfContactPair& pair = found.pairs[i];
     const Point3& p = pair.points[0].point;
-    std::string line = fmt::format("{:<12}  {} {} and {}, at {} {} {}", name_of(pair.verdict), owner,
-                                   pair.points[0].at->owner, pair.points[1].at->owner, p.x, p.y, p.z);
+    std::string line =
+        fmt::format("{:<12}  {} {} and {}, at {} {} {}", pair.touching ? "touching" : name_of(pair.verdict),
+                    owner, pair.points[0].at->owner, pair.points[1].at->owner, p.x, p.y, p.z);
     if (pair.verdict == SelfVerdict::near) line += fmt::format(", at most {} apart", pair.distance.upper);
     report.text(line);
   }

@@ -103,7 +103,7 @@ struct Contacts {
 /// Does a surface meet itself?
 enum class SelfVerdict : std::uint8_t {
   clear,         ///< proved: no two parameters have the same limit point
-  intersecting,  ///< proved: two pieces without a common corner cross each other
+  intersecting,  ///< proved: two pieces without a common corner cross each other, or two facets have a common point
   near,  ///< proved: two points are at most `within` apart, but farther apart than the radius along the surface
   undecided,  ///< none of these could be shown
 };
@@ -122,6 +122,7 @@ struct SelfContactOptions {
 /// Two places of a surface that meet, are near each other, or could not be proved apart.
 struct SelfContactPair {
   SelfVerdict verdict = SelfVerdict::undecided;  ///< all but clear
+  bool touching = false;                         ///< of facets that intersect: in no point inside of both
   WitnessPoints points;                          ///< on the two pieces in question; `at` is set
   Interval distance;  ///< contains the distance of the two pieces; [0, 0] where they cross
 };
@@ -129,8 +130,7 @@ struct SelfContactPair {
 /// The answer to "does this surface meet itself?"
 struct SelfContact {
   SelfVerdict verdict = SelfVerdict::undecided;
-  /// The places that the verdict rests on: the first max_pairs at most, in an order that depends only on the
-  /// surface. None if the verdict is clear.
+  /// The places that the verdict rests on, the first max_pairs at most; their order depends on the surface alone. None if clear.
   std::vector<SelfContactPair> pairs;
   static constexpr std::size_t max_pairs = 100;
   std::uint64_t stars = 0;              ///< neighbourhoods of vertices tested
@@ -142,15 +142,15 @@ struct SelfContact {
 
 /// Does a limit surface meet itself?
 ///
-/// Pieces without a common corner are proved apart or proved to cross. The pieces around a vertex are together proved
-/// not to meet except along shared edges, or are split.
+/// Pieces without a common corner are proved apart or proved to cross. The pieces around a vertex are together proved not to meet
+/// except along shared edges, or are split. With `within`, `clear` also proves that any two points so close are joined by a path on
+/// the surface no longer than the radius, and `near` that two of them are not joined by such a path.
 ///
-/// With `within`, `clear` also proves that any two points so close are joined by a path on the surface no longer than
-/// the radius, and `near` that two of them are not joined by such a path.
-///
-/// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Places where the surface is not an immersion (spikes, folded creases, collapsed
-///            patches, vertices and edges that are not manifold) are `undecided`, never `clear`; so are darts, and
-///            smooth vertices of boundaries and creases with many faces (docs/self_contact.md).
+/// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Facets (triangles of flat,
+///            plane convex faces of bilinear, such faces that are sharp all around) are compared exactly: touching is found, also
+///            where vertices coincide but are not one. On others, places where the surface is not an immersion (spikes, folded
+///            creases, collapsed patches, what is not manifold) are `undecided`, never `clear`; so are darts, and smooth vertices
+///            of boundaries and creases with many faces (docs/self_contact.md).
 /// Budget:    1,000,000 stars and pairs of pieces tested, about; 100 bytes each.
 /// Errors:    InputError: (value) for more than 20 levels, for `within` not positive and finite, and for a radius that
 ///            is not finite, is below twice `within`, or is given without it; (refused) if

@@ -95,7 +95,7 @@ void append_real(std::string& text, double value) {
   text.append(digits.data(), result.ptr);
 }
 
-std::string text_at_most(double x, bool at_least) {
+std::string text_at_most(double x, bool at_least, double within) {
   std::array<char, 32> text{};  // "-1.2345678901234567e-308"
   const auto written = [&](int digits) {
     return std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits).ptr;
@@ -105,7 +105,7 @@ std::string text_at_most(double x, bool at_least) {
     end = written(digits);
     double read = x;
     std::from_chars(text.data(), end, read);
-    if (at_least ? read >= x : read <= x) break;
+    if (read == x || ((at_least ? read > x : read < x) && std::fabs(read - x) <= within)) break;
   }
   return {text.data(), static_cast<std::size_t>(end - text.data())};
 }

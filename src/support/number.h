@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,8 +43,9 @@ void append_real(std::string& text, double value);
 void append_point(std::string& text, const Point3& point);
 
 /// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least`
-/// for upper ones.
-[[nodiscard]] std::string text_at_most(double x, bool at_least = false);
+/// for upper ones; more digits where these are more than `within` off.
+[[nodiscard]] std::string text_at_most(double x, bool at_least = false,
+                                       double within = std::numeric_limits<double>::infinity());
 
 /// "0.031 (0.25 % of the size)": at least that length.
 [[nodiscard]] std::string text_of_length(double length, double size);

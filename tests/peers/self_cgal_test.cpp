@@ -107,6 +107,9 @@ TEST(self_cgal, sharp_polyhedra_are_judged_as_by_exact_predicates) {
     if (!meets) return;
     const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = Scheme::loop}), {},
                                            {.max_splits = 20'000});
+    // The same triangles as facets: decided always, touching included.
+    const SelfContact facets = self_contact(Surface(testing::control_mesh(mesh), {.scheme = Scheme::flat}));
+    EXPECT_EQ(facets.verdict, *meets ? SelfVerdict::intersecting : SelfVerdict::clear) << name;
     ++counts[std::string(name_of(found.verdict)) + (*meets ? ", meets itself" : ", does not")];
     if (*meets) {
       EXPECT_NE(found.verdict, SelfVerdict::clear) << name;

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
+#include <oracle/hull_twin.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/polyhedron_twin.h>
 #include <oracle/tagged_shapes.h>
+#include <oracle/test_meshes.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/search/surface_data.h>
@@ -14,6 +16,7 @@
 #include <testing/exact_triangles.h>
 #include <testing/pieces.h>
 #include <testing/tagged.h>
+#include <testing/twins.h>
 
 #include <iostream>
 #include <random>
@@ -149,15 +152,57 @@ TEST(flat, closest_points_are_those_of_the_triangles) {
     for (int k = 0; k < 20; ++k) {
       const ExactPoint at = random_point(random);
       const Point3 q{static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
-      Precision options;
-      options.relative = options.absolute = 1e-9;
-      const ClosestPoint found = closest_point(body, q, options);
+      // However little is asked for, all is told that doubles hold.
+      const double asked = k % 2 == 0 ? 1e-12 : 100;
+      const ClosestPoint found = closest_point(body, q, {.absolute = asked, .relative = asked});
       const mpq_class square = twin.squared_distance({q.x, q.y, q.z});
       EXPECT_EQ(found.outcome, Outcome::complete);
+      EXPECT_LE(found.distance.upper - found.distance.lower, 0x1p-45 * 60) << trial;
+      EXPECT_LE(distance(found.point, q), found.distance.upper * (1 + 1e-15)) << trial;
+      EXPECT_LE(distance(evaluate(body, *found.at).point, q), found.distance.upper + 1e-13) << trial;
       EXPECT_LE(mpq_class(found.distance.lower) * mpq_class(found.distance.lower), square) << trial;
       EXPECT_GE(mpq_class(found.distance.upper) * mpq_class(found.distance.upper), square) << trial;
     }
   }
+}
+
+// Of bodies with saddles, spikes and flat corners: signs by the normal of the facet that is named are right, also where corners and
+// edges are nearest.
+TEST(flat, the_facet_that_is_named_has_the_point_on_its_own_side) {
+  std::mt19937_64 random(31);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  int bodies = 0, corners = 0, asked = 0;
+  for (int trial = 0; trial < 120 && !HasFailure(); ++trial) {
+    oracle::TwinMesh mesh = trial % 3 == 0   ? oracle::meshes::octahedron()
+                            : trial % 3 == 1 ? oracle::meshes::bipyramid(3 + trial % 7)
+                                             : oracle::meshes::icosahedron();
+    if (trial % 2 == 0) mesh = oracle::meshes::quartered(mesh);
+    mesh = oracle::meshes::disturbed(mesh, trial % 5, 0.1 * (trial % 6), random);
+    if (!oracle::HullTwin(mesh.points, mesh.triangles).contacts().empty()) continue;
+    ++bodies;
+    const oracle::PolyhedronTwin twin(mesh.points, mesh.triangles);
+    const Surface body(testing::control_mesh(mesh), {.scheme = Scheme::flat});
+    for (int k = 0; k < 40; ++k) {
+      const auto& near = mesh.points[random() % mesh.points.size()];
+      const double by = std::ldexp(1.0, -static_cast<int>(random() % 12));
+      const oracle::Point at{near[0] + by * unit(), near[1] + by * unit(), near[2] + by * unit()};
+      const ClosestPoint found = closest_point(body, {at[0], at[1], at[2]});
+      const std::optional<int> winding = twin.winding(at);
+      if (!winding || found.distance.lower < 1e-9) continue;
+      const auto& face = mesh.triangles[found.at->owner];
+      const auto corner = [&](std::size_t i) {
+        return Point3{mesh.points[face[i]][0], mesh.points[face[i]][1], mesh.points[face[i]][2]};
+      };
+      const Vector3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
+      const double side = dot(normal, Point3{at[0], at[1], at[2]} - corner(0));
+      EXPECT_EQ(side > 0, *winding == 0) << trial << ' ' << k;
+      ++asked;
+      corners += found.at->u + found.at->v == 0 || found.at->u == 1 || found.at->v == 1;
+    }
+  }
+  std::cout << "  " << bodies << " bodies, " << asked << " points, " << corners << " nearest to corners\n";
+  EXPECT_GT(bodies, 60);
+  EXPECT_GT(corners, asked / 20);
 }
 
 // Rings, boundaries and sharpness are nothing to it.

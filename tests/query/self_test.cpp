@@ -3,13 +3,19 @@
 #include <snug/contacts.h>
 
 #include <gtest/gtest.h>
+#include <oracle/hull_twin.h>
 #include <oracle/tagged_shapes.h>
+#include <oracle/test_meshes.h>
 #include <snug/run.h>
 #include <testing/closed_meshes.h>
 #include <testing/tagged.h>
+#include <testing/twins.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <random>
 #include <string>
 
 namespace snug::self_test {
@@ -198,11 +204,18 @@ TEST(self_contact, faces_that_only_have_a_vertex_in_common_are_no_fan) {
             mesh.polygons.push_back({0, a, a + 1, a + 2});
           }
         }
+        // As they are these are facets; quads that are bent are not.
+        const SelfVerdict of_facets = turn < 90 ? SelfVerdict::intersecting : SelfVerdict::clear;
+        EXPECT_EQ(ask(mesh, scheme, {}, {.max_splits = 20'000}).verdict, of_facets)
+            << name_of(scheme) << " turned by " << turn;
+        if (scheme == Scheme::loop) continue;
+        for (const std::size_t middle : {2, 5}) mesh.points[middle][2] = 0.25;
         const SelfVerdict verdict = ask(mesh, scheme, {}, {.max_splits = 20'000}).verdict;
         if (turn < 90) {
           EXPECT_NE(verdict, SelfVerdict::clear) << name_of(scheme) << " turned by " << turn;
+        } else {
+          EXPECT_EQ(verdict, SelfVerdict::undecided) << name_of(scheme) << " turned by " << turn;
         }
-        EXPECT_EQ(verdict, SelfVerdict::undecided) << name_of(scheme) << " turned by " << turn;
       }
     }
   }
@@ -255,6 +268,76 @@ TEST(self_contact, outcomes_say_whether_a_larger_budget_helps) {
     EXPECT_EQ(levels.verdict, SelfVerdict::undecided);
     EXPECT_EQ(levels.outcome, Outcome::at_rounding);
   }
+}
+
+// Facets are compared exactly: every verdict is that of rational arithmetic, none is open.
+TEST(self_contact, of_facets_is_decided_always) {
+  std::mt19937_64 random(21);
+  std::map<std::string, int> counts;
+  for (int trial = 0; trial < 400 && !HasFailure(); ++trial) {
+    oracle::TwinMesh twin = trial % 3 == 0   ? oracle::meshes::bipyramid(3 + trial % 8)
+                            : trial % 3 == 1 ? oracle::meshes::icosahedron()
+                                             : oracle::meshes::quartered(oracle::meshes::octahedron());
+    twin = oracle::meshes::disturbed(twin, trial % 4, 0.2 * (trial % 5), random);
+    const double grain = trial % 2 == 0 ? 0.25 : 0;
+    for (auto& p : twin.points) {
+      for (double& x : p) x = grain > 0 ? grain * std::round(x / grain) : x;
+    }
+    const SelfContact found = self_contact(Surface(testing::control_mesh(twin), {.scheme = Scheme::flat}));
+    const auto contacts = oracle::HullTwin(twin.points, twin.triangles).contacts();
+    EXPECT_EQ(found.verdict, contacts.empty() ? SelfVerdict::clear : SelfVerdict::intersecting) << trial;
+    EXPECT_EQ(found.outcome, Outcome::complete);
+    ++counts[name_of(found.verdict)];
+    for (const SelfContactPair& pair : found.pairs) {
+      const std::pair<std::size_t, std::size_t> faces{pair.points[0].at->owner, pair.points[1].at->owner};
+      EXPECT_TRUE(std::find(contacts.begin(), contacts.end(), faces) != contacts.end()) << trial;
+      EXPECT_EQ(pair.distance.upper, 0);
+      EXPECT_LT(distance(pair.points[0].point, pair.points[1].point), 1e-9) << trial;
+      counts["touching"] += pair.touching;
+      counts["crossing"] += !pair.touching;
+    }
+  }
+  for (const char* what : {"clear", "intersecting", "touching", "crossing"})
+    EXPECT_GT(counts[what], 50) << what;
+}
+
+// Quads and other polygons that are plane and convex are facets, too, of bilinear; others are not.
+TEST(self_contact, of_plane_polygons_is_decided_exactly) {
+  const auto boxes = [](double dx, double dy) {
+    oracle::TaggedMesh mesh = both(meshes::cube(), meshes::cube(), dx);
+    for (std::size_t v = mesh.points.size() / 2; v < mesh.points.size(); ++v) mesh.points[v][1] += dy;
+    return mesh;
+  };
+  EXPECT_EQ(ask(boxes(2, 0), Scheme::bilinear).verdict, SelfVerdict::clear);
+  const SelfContact crossing = ask(boxes(0.5, 0.25), Scheme::bilinear);
+  EXPECT_EQ(crossing.verdict, SelfVerdict::intersecting);
+  EXPECT_FALSE(crossing.pairs[0].touching);
+  // Side by side: faces lie on one another; edge to edge they touch only.
+  EXPECT_EQ(ask(boxes(1, 0), Scheme::bilinear).verdict, SelfVerdict::intersecting);
+  EXPECT_FALSE(ask(boxes(1, 0.5), Scheme::bilinear).pairs[0].touching);
+  const SelfContact touching = ask(boxes(1, 1), Scheme::bilinear);
+  EXPECT_EQ(touching.verdict, SelfVerdict::intersecting);
+  for (const SelfContactPair& pair : touching.pairs) EXPECT_TRUE(pair.touching);
+  // Bodies with other faces are still decided, in the slower way.
+  oracle::TaggedMesh bent = meshes::cube();
+  bent.points[7][0] += 0.25;
+  bent.points[7][1] += 0.5;
+  EXPECT_EQ(ask(bent, Scheme::bilinear).verdict, SelfVerdict::clear);
+  for (std::uint32_t n = 3; n < 9; ++n)
+    EXPECT_EQ(ask(meshes::prism(n), Scheme::bilinear).verdict, SelfVerdict::clear) << n;
+}
+
+// A facet without area has two parameters with one point.
+TEST(self_contact, of_a_facet_without_area_is_one_with_itself) {
+  oracle::TaggedMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {2, 1, 0}};
+  mesh.polygons = {{0, 1, 2}, {0, 2, 3}};
+  const SelfContact found = ask(mesh, Scheme::flat);
+  EXPECT_EQ(found.verdict, SelfVerdict::intersecting);
+  ASSERT_EQ(found.pairs.size(), 1u);
+  EXPECT_TRUE(found.pairs[0].touching);
+  EXPECT_EQ(found.pairs[0].points[0].at->owner, 0u);
+  EXPECT_EQ(found.pairs[0].points[1].at->owner, 0u);
 }
 
 }  // namespace

@@ -152,6 +152,9 @@ TEST(text_at_most, rounds_to_the_side_asked_for_in_six_digits_or_few_more) {
       const double read = parse_real(text).value;
       EXPECT_TRUE(at_least ? read >= x : read <= x) << text;
       EXPECT_LE(std::abs(read / 4 - x / 4), 5e-6 * (std::abs(x) / 4)) << text;
+      const double within = 1e-12 * std::abs(x);
+      const double near = parse_real(text_at_most(x, at_least, within)).value;
+      EXPECT_TRUE((at_least ? near >= x : near <= x) && std::abs(near - x) <= within) << text;
     }
   }
 }

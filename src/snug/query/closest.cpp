@@ -11,6 +11,7 @@
 #include <snug/certificate/certify.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/facet.h>
 #include <snug/search/gap.h>
 #include <snug/search/point_batch.h>
 #include <snug/search/precision.h>
@@ -55,8 +56,6 @@ class ClosestSearch {
         options_(options),
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::closest_point)),
-        bounds_(surface().scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
-                *options.relative, point_noise * (2 + max_abs(to.at - Point3{}))),
         coarse_(surface().scale().apply(*options.absolute) > 0x1p-16 * (4 + max_abs(to.at - Point3{}))) {}
 
   ClosestPoint run() {
@@ -73,6 +72,14 @@ class ClosestSearch {
     if (gap_ >= bounds_.prune_distance()) return pruned();
     if (at.node.bounded()) {
       monitor_.checkpoint();
+      if (at.node.kind == Node::Kind::patch) {
+        const PatchId patch = cache_.name(at.node).patch;
+        if (const std::optional<Facet> facet = facet_of(surface(), patch)) {
+          look_at_facet(patch, *facet);
+          return pruned();
+        }
+        accept_precision();
+      }
       gap_ = std::max(gap_, gap_of(at.node, PieceCache::bounds_of(at.node)));
       if (gap_ >= bounds_.prune_distance()) return pruned();
       if (!PieceCache::can_open(at.node)) {
@@ -109,6 +116,29 @@ class ClosestSearch {
   Verb pruned() {
     bounds_.prune(gap_);
     return Verb::drop;
+  }
+
+  // Facets are compared as exactly as rounding allows, since that costs no more; a patch that bends ends that.
+  void accept_precision() {
+    bounds_.accept(surface().scale().apply(*options_.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
+                   *options_.relative, point_noise * (2 + max_abs(to_.at - Point3{})));
+  }
+
+  // Of those that come as near, up to rounding, the one that faces the point is the answer.
+  void look_at_facet(PatchId patch, const Facet& facet) {
+    const double coordinates = std::max(facet.largest, max_abs(to_.at - Point3{})),
+                 off = enlarged(facet.off + 2 * spatial_error(to_.error));
+    const PointTriangleDistance found = distance_between(to_.at, facet.triangle, coordinates);
+    gap_ = std::max(gap_, found.lower - off);
+    if (gap_ > bounds_.upper()) return;
+    const Facing facing = snug::facing(to_.at, facet.triangle, found.foot);
+    if (!(found.upper + off < closest_.least) && !facing.better_than(closest_.facing)) return;
+    const TriangleParameter at = facet.place_of(found.foot);
+    const BoundedPoint point = facet.point(at);
+    const double upper = distance_at_most(point.position - to_.at, spatial_error(point.error + to_.error));
+    bounds_.reduce_upper(upper);
+    const PatchPlace place = surface().place(patch);
+    closest_ = {point, upper, {place.owner, facet.corner, at.u, at.v}, gap_, facing};
   }
 
   // A lower bound of the distance of a piece: by its quadratic in single precision, which improves the upper one, too, unless
@@ -158,7 +188,7 @@ class ClosestSearch {
     const double upper = distance_at_most(found.position - to_.at, spatial_error(found.error + to_.error));
     if (!(upper < closest_.distance)) return;
     bounds_.reduce_upper(upper);
-    closest_ = {found, upper, place_of(surface(), cache_.name(node), at)};
+    closest_ = {found, upper, place_of(surface(), cache_.name(node), at), upper};
   }
 
   // The point of the quadratic there.
@@ -166,7 +196,7 @@ class ClosestSearch {
     const PieceBounds& record = PieceCache::bounds_of(node);
     const Point3 point = node.boxes->origin() + record.at(at);
     const double error = enlarged(record.error() + unit_roundoff * max_abs(point - Point3{}));
-    closest_ = {{point, error}, bounds_.upper(), place_of(surface(), cache_.name(node), at)};
+    closest_ = {{point, error}, bounds_.upper(), place_of(surface(), cache_.name(node), at), bounds_.upper()};
   }
 
   [[nodiscard]] double plane_gap(const Node& node, const Vector3& direction) {
@@ -193,7 +223,9 @@ class ClosestSearch {
         take(nearest_->node, nearest_->at);
       }
     }
-    const Interval distance = in_mesh_units();
+    Interval distance = in_mesh_units();
+    // Of several facets that come as near up to rounding, the point is on one.
+    distance.upper = std::max(distance.upper, require_representable(unscaled_up(closest_.distance, back)));
     const BoundedPoint closest = unscaled(closest_.point, back);
     return {{closest.position, closest.error, closest_.at},
             distance,
@@ -208,7 +240,7 @@ class ClosestSearch {
   const Precision& options_;
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;
-  DistanceBounds bounds_;
+  DistanceBounds bounds_{0, 0, 0};
   bool coarse_;     // far above the roundings of single precision
   double gap_ = 0;  // of the node at hand
   // Where a quadratic came nearest that is known to be nearer than the point.
@@ -222,6 +254,8 @@ class ClosestSearch {
     BoundedPoint point;
     double distance = INFINITY;  // at most
     Place at{};
+    double least = INFINITY;  // at least
+    Facing facing{-INFINITY, 0};
   };
   Found closest_;
   std::uint64_t splits_ = 0;

@@ -409,7 +409,8 @@ class OneHull {
     std::vector<Point3> points;
     points.reserve(facets_.positions.size());
     for (const Point3& p : facets_.positions) points.push_back(scale_.apply(p));
-    for (const auto& [a, b] : self_contacts(points, mesh_.triangles, max_contacts, run_.threads, monitor_)) {
+    for (const auto& [a, b, contact] :
+         self_contacts(points, mesh_.triangles, max_contacts, run_.threads, monitor_)) {
       blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
     }
@@ -535,7 +536,8 @@ class Verification {
     std::vector<Point3> points;
     points.reserve(hull.positions.size());
     for (const Point3& p : hull.positions) points.push_back(model_.surface().scale().apply(p));
-    for (const auto& [a, b] : self_contacts(points, hull.triangles, max_problems, run_.threads, monitor_)) {
+    for (const auto& [a, b, contact] :
+         self_contacts(points, hull.triangles, max_problems, run_.threads, monitor_)) {
       blame_triangle(HullFault::meets_itself, a);
     }
     return problems_.size() == before;

@@ -8,6 +8,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/query/self_facets.h>
 #include <snug/query/self_near.h>
 #include <snug/query/self_pieces.h>
 #include <snug/search/crossing.h>
@@ -132,16 +133,33 @@ class SelfSearch {
     }
   }
 
-  [[nodiscard]] SelfContact run() {
+  // Faces of `facets` do not meet each other.
+  [[nodiscard]] SelfContact run(const ComparedFacets& facets) {
     const std::vector<PieceName> pieces = complex_.pieces();
     if (pieces.empty()) {
       throw InputError(
           InputProblem::refused,
           "no face has a limit surface: all are holes or touch the boundary; use another boundary rule");
     }
+    if (!facets.all) look_for_contact(pieces, facets.faces);
+    if (options_.within && !crossing_) look_for_near();
+    return result();
+  }
+
+ private:
+  void look_for_contact(const std::vector<PieceName>& pieces, const std::vector<bool>& facets) {
     unsigned level = complex_.first_level();
-    compare_far(far_pairs(pieces));
-    std::vector<NamePair> live = near_pairs(pieces);
+    const auto are_facets = [&](const NamePair& pair) {
+      const auto is_facet = [&](const PieceName& piece) {
+        const std::uint32_t owner = surface_.place(piece.patch).owner;
+        return surface_.rules().primal && facets[owner];
+      };
+      return is_facet(pair.first) && is_facet(pair.second);
+    };
+    std::vector<NamePair> far = far_pairs(pieces), live = near_pairs(pieces);
+    std::erase_if(far, are_facets);
+    std::erase_if(live, are_facets);
+    compare_far(far);
     for (unsigned depth = 0; !live.empty() && !crossing_; ++depth, ++level) {
       monitor_.checkpoint();
       drop_proved(live, level);
@@ -151,16 +169,13 @@ class SelfSearch {
         for (const NamePair& pair : live) leave(pair);
         break;
       }
-      std::vector<NamePair> far;
+      far.clear();
       live = split_pairs(live, far);
       compare_far(far);
       answer_.levels = depth + 1;
     }
-    if (options_.within && !crossing_) look_for_near();
-    return result();
   }
 
- private:
   void look_for_near() {
     // In scaled units all distances are below 16; a radius is 1e100 at most: only other components are so far.
     const PowerOfTwo scale = surface_.scale();
@@ -374,7 +389,11 @@ SelfContact self_contact(const Surface& surface, const SelfContactOptions& optio
         "self contact: the radius is less than twice 'within', where even flat places are near each other "
         "beyond it; give a longer one");
   }
-  return SelfSearch(surface.data()->bvh(stop_only(run)), options, run).run();
+  const ComparedFacets facets = compare_facets(surface.data()->limit(), run.threads, monitor_of(run));
+  const bool clear = facets.answer.verdict == SelfVerdict::clear;
+  const bool any = std::find(facets.faces.begin(), facets.faces.end(), true) != facets.faces.end();
+  if (!clear || (any && facets.all && !options.within)) return facets.answer;
+  return SelfSearch(surface.data()->bvh(stop_only(run)), options, run).run(facets);
 }
 
 }  // namespace snug

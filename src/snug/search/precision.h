@@ -41,6 +41,12 @@ class DistanceBounds {
   DistanceBounds(double absolute, double relative, double noise)
       : absolute_(std::max(absolute, noise)), relative_(relative) {}
 
+  /// From now on with this precision.
+  void accept(double absolute, double relative, double noise) {
+    absolute_ = std::max(absolute, noise);
+    relative_ = relative;
+  }
+
   [[nodiscard]] double upper() const { return upper_; }
   [[nodiscard]] double lower() const { return std::min(std::max(pruned_, floor_), upper_); }
   [[nodiscard]] double precision() const { return std::max(absolute_, relative_ * upper_); }

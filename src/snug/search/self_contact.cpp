@@ -1,10 +1,10 @@
 #include <snug/search/self_contact.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
-#include <snug/geometry/nearest_to_origin.h>
-#include <snug/geometry/rounding.h>
-#include <snug/geometry/triangle_distance.h>
+#include <snug/geometry/exact_sign.h>
 #include <snug/search/feet.h>
 #include <snug/search/piece.h>
 #include <support/direction.h>
@@ -14,35 +14,10 @@ namespace snug {
 namespace {
 
 using Names = std::array<std::uint32_t, 3>;
+using Corners3 = std::array<const Point3*, 3>;
 
-// Directions from a common vertex are compared with a plane through it; products of unit vectors err by less.
-constexpr double min_height = 0x1p-40;
 // Of a triangle with later ones: bounds the memory where everything meets everything.
 constexpr int max_of_one = 16;
-
-// Is there a plane through a vertex with two triangles on different sides of it?
-bool parted_at(const Point3& vertex, const std::array<Point3, 2>& a, const std::array<Point3, 2>& b) {
-  const std::array<Vector3, 4> rays{normalized(a[0] - vertex), normalized(a[1] - vertex),
-                                    -normalized(b[0] - vertex), -normalized(b[1] - vertex)};
-  const Vector3 w = normalized(nearest_to_origin(rays));
-  return std::all_of(rays.begin(), rays.end(), [&](const Vector3& r) { return dot(w, r) > min_height; });
-}
-
-// Do two triangles on an edge have an angle between them?
-bool parted_along(const Point3& from, const Point3& to, const Point3& a, const Point3& b) {
-  const Vector3 edge = normalized(to - from);
-  double rounding = min_height;
-  std::array<Vector3, 2> across;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Vector3 d = (i == 0 ? a : b) - from;
-    const Vector3 own = d - dot(d, edge) * edge;
-    // A component across the edge that is mostly rounding is no direction.
-    if (edge == Vector3{} || !(length(own) > min_height * length(d))) return false;
-    across[i] = normalized(own);
-    rounding += 64 * unit_roundoff * length(d) / length(own);
-  }
-  return dot(across[0], across[1]) < 0 || length(cross(across[0], across[1])) > rounding;
-}
 
 // A triangle's extents along axes of its own: these tell most triangles near a narrow one from it.
 class Slabs {
@@ -74,67 +49,201 @@ class Slabs {
   std::array<Extent, 3> extents_;
 };
 
-bool may_touch(std::span<const Point3> points, const Names& a, const Names& b) {
+// Two coordinates in which a triangle keeps its area; none if it has none.
+std::optional<Projection> plane_of(const Corners3& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Projection plane{i, (i + 1) % 3};
+    if (orientation(*t[0], *t[1], *t[2], plane) != 0) return plane;
+  }
+  return std::nullopt;
+}
+
+// How corners of one triangle lie to another one.
+using Sides = std::array<int, 3>;
+
+// Two triangles with area that name at most one vertex both, compared by signs of determinants alone.
+class ExactPair {
+ public:
+  ExactPair(const Corners3& a, const Corners3& b) : t_{a, b} {
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Corners3 &own = t_[s], &other = t_[1 - s];
+      for (std::size_t k = 0; k < 3; ++k)
+        sides_[s][k] = orientation(*other[0], *other[1], *other[2], *own[k]);
+    }
+  }
+
+  // Of triangles without a common vertex: some point. `common`: the corner of each that is one vertex; a point beside it, which
+  // leads, away from it, to the far side of one of them.
+  [[nodiscard]] TriangleContact contact(std::optional<std::array<std::size_t, 2>> common) {
+    for (const Sides& side : sides_) {
+      if (one_sign(side, 1) || one_sign(side, -1)) return TriangleContact::none;
+    }
+    const bool plane = sides_[0] == Sides{};
+    if (plane) plane_ = *plane_of(t_[0]);
+    bool met = false;
+    for (std::size_t s = 0; s < 2 && !met; ++s) {
+      for (std::size_t k = 0; k < 3 && !met; ++k) {
+        if (!common || k == ((*common)[s] + 1) % 3)
+          met = plane ? edge_meets_in_plane(s, k) : edge_meets(s, k);
+      }
+    }
+    if (!met) return TriangleContact::none;
+    if (plane)
+      return insides_are_apart(0) || insides_are_apart(1) ? TriangleContact::touching
+                                                          : TriangleContact::overlapping;
+    if (!straddles(sides_[0]) || !straddles(sides_[1])) return TriangleContact::touching;
+    return common || chords_overlap() ? TriangleContact::crossing : TriangleContact::touching;
+  }
+
+ private:
+  static bool one_sign(const Sides& sides, int sign) {
+    // A common vertex is in the other plane.
+    return std::all_of(sides.begin(), sides.end(), [&](int s) { return s == sign; });
+  }
+  static bool straddles(const Sides& sides) {
+    return std::min({sides[0], sides[1], sides[2]}) < 0 && std::max({sides[0], sides[1], sides[2]}) > 0;
+  }
+  static bool of_both_signs(int x, int y, int z) {
+    return std::min({x, y, z}) < 0 && std::max({x, y, z}) > 0;
+  }
+
+  // Does edge k of triangle s meet the other one? They are in different planes.
+  [[nodiscard]] bool edge_meets(std::size_t s, std::size_t k) const {
+    const Point3 &p = *t_[s][k], &q = *t_[s][(k + 1) % 3];
+    const Corners3& t = t_[1 - s];
+    const int above_p = sides_[s][k], above_q = sides_[s][(k + 1) % 3];
+    if (above_p * above_q > 0) return false;
+    if (above_p == 0 && above_q == 0) return segment_meets_in_plane(p, q, t, *plane_of(t));
+    return !of_both_signs(orientation(p, q, *t[0], *t[1]), orientation(p, q, *t[1], *t[2]),
+                          orientation(p, q, *t[2], *t[0]));
+  }
+  [[nodiscard]] bool edge_meets_in_plane(std::size_t s, std::size_t k) const {
+    return segment_meets_in_plane(*t_[s][k], *t_[s][(k + 1) % 3], t_[1 - s], plane_);
+  }
+  // Not where all of the one is outside of an edge of the triangle, or all of the triangle on one side of its line.
+  static bool segment_meets_in_plane(const Point3& p, const Point3& q, const Corners3& t, Projection plane) {
+    const int turn = orientation(*t[0], *t[1], *t[2], plane);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point3 &from = *t[k], &to = *t[(k + 1) % 3];
+      if (turn * orientation(from, to, p, plane) < 0 && turn * orientation(from, to, q, plane) < 0)
+        return false;
+    }
+    std::array<int, 3> of_line;
+    for (std::size_t k = 0; k < 3; ++k) of_line[k] = orientation(p, q, *t[k], plane);
+    return !one_sign(of_line, 1) && !one_sign(of_line, -1);
+  }
+  // Of triangles in a plane: is there an edge of one that the other has nothing inside of?
+  [[nodiscard]] bool insides_are_apart(std::size_t s) const {
+    const Corners3 &own = t_[s], &other = t_[1 - s];
+    const int turn = orientation(*own[0], *own[1], *own[2], plane_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool outside = std::all_of(other.begin(), other.end(), [&](const Point3* p) {
+        return turn * orientation(*own[k], *own[(k + 1) % 3], *p, plane_) <= 0;
+      });
+      if (outside) return true;
+    }
+    return false;
+  }
+  // Both straddle the other's plane, so have chords on the line that both planes share: do these have more than an end in common?
+  // Source: [Guigue03].
+  [[nodiscard]] bool chords_overlap() const {
+    const Corners3 a = alone_first(0), b = alone_first(1);
+    return orientation(*a[0], *a[1], *b[0], *b[1]) < 0 && orientation(*a[0], *a[2], *b[2], *b[0]) < 0;
+  }
+  // The corners in order, first the one that is alone on its side, with the other triangle turned so that this is its upper one.
+  [[nodiscard]] Corners3 alone_first(std::size_t s) const {
+    const auto alone = [](const Sides& sides) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int own = sides[k], next = sides[(k + 1) % 3], last = sides[(k + 2) % 3];
+        if (own != 0 && own * next <= 0 && own * last <= 0) return k;
+      }
+      return std::size_t{0};
+    };
+    const std::size_t k = alone(sides_[s]), of_other = alone(sides_[1 - s]);
+    Corners3 turned{t_[s][k], t_[s][(k + 1) % 3], t_[s][(k + 2) % 3]};
+    if (sides_[1 - s][of_other] < 0) std::swap(turned[1], turned[2]);
+    return turned;
+  }
+
+  std::array<Corners3, 2> t_;
+  std::array<Sides, 2> sides_;
+  Projection plane_;  // that both are in
+};
+
+TriangleContact contact_between(std::span<const Point3> points, const Names& a, const Names& b) {
+  const Corners3 s{&points[a[0]], &points[a[1]], &points[a[2]]},
+      t{&points[b[0]], &points[b[1]], &points[b[2]]};
   std::array<std::size_t, 3> in_a{}, in_b{};
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       if (a[i] != b[j]) continue;
-      if (common == 3) return true;
       in_a[common] = i;
       in_b[common] = j;
       ++common;
     }
   }
-  if (common == 0) {
-    const Triangle x{points[a[0]], points[a[1]], points[a[2]]}, y{points[b[0]], points[b[1]], points[b[2]]};
-    return !(nearest(x, y).certain_distance > 0);
-  }
-  if (common == 1) {
-    const std::size_t i = in_a[0], j = in_b[0];
-    return !parted_at(points[a[i]], {points[a[(i + 1) % 3]], points[a[(i + 2) % 3]]},
-                      {points[b[(j + 1) % 3]], points[b[(j + 2) % 3]]});
-  }
+  if (common == 3) return TriangleContact::overlapping;
   if (common == 2) {
-    return !parted_along(points[a[in_a[0]]], points[a[in_a[1]]], points[a[3 - in_a[0] - in_a[1]]],
-                         points[b[3 - in_b[0] - in_b[1]]]);
+    // In one plane, and on one side of the edge?
+    const Point3 &v = *s[in_a[0]], &w = *s[in_a[1]], &x = *s[3 - in_a[0] - in_a[1]],
+                 &y = *t[3 - in_b[0] - in_b[1]];
+    if (orientation(v, w, x, y) != 0) return TriangleContact::none;
+    const Projection plane = *plane_of(s);
+    return orientation(v, w, x, plane) == orientation(v, w, y, plane) ? TriangleContact::overlapping
+                                                                      : TriangleContact::none;
   }
-  return true;
+  if (common == 1) return ExactPair(s, t).contact(std::array{in_a[0], in_b[0]});
+  return ExactPair(s, t).contact(std::nullopt);
+}
+
+// What can be said of a triangle alone: it has no area, or not the coordinates for exact signs.
+TriangleContact contact_of_one(std::span<const Point3> points, const Names& t) {
+  const Corners3 corners{&points[t[0]], &points[t[1]], &points[t[2]]};
+  if (!std::all_of(corners.begin(), corners.end(), [](const Point3* p) { return may_be_signed(*p); }))
+    return TriangleContact::unknown;
+  return plane_of(corners) ? TriangleContact::none : TriangleContact::collapsed;
 }
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> self_contacts(std::span<const Point3> points,
-                                                                   std::span<const Names> triangles,
-                                                                   std::size_t most, int threads,
-                                                                   const WorkMonitor& monitor) {
+std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::span<const Names> triangles,
+                                        std::size_t most, int threads, const WorkMonitor& monitor) {
   if (triangles.empty()) return {};
   std::vector<QuadraticTriangle> flat;
-  flat.reserve(triangles.size());
-  for (const Names& t : triangles) flat.push_back(flat_quadratic({points[t[0]], points[t[1]], points[t[2]]}));
+  std::vector<TriangleContact> alone;
+  for (const Names& t : triangles) {
+    flat.push_back(flat_quadratic({points[t[0]], points[t[1]], points[t[2]]}));
+    alone.push_back(contact_of_one(points, t));
+  }
   PieceSet set(std::move(flat));
   set.prepare(threads);
   constexpr std::size_t block = 1024;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> found((triangles.size() + block - 1) /
-                                                                          block);
+  std::vector<std::vector<TrianglePair>> found((triangles.size() + block - 1) / block);
   parallel_for(found.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       monitor.checkpoint();
       for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
+        const auto own = static_cast<std::uint32_t>(i);
         int of_this = 0;
+        if (alone[i] != TriangleContact::none) found[b].push_back({own, own, alone[i]});
+        if (alone[i] == TriangleContact::collapsed) continue;
         const Slabs slabs(set[i].corners);
         for_each_near(set, set[i], [&](std::uint32_t other) {
-          if (other <= i || of_this == max_of_one || slabs.apart(set[other].corners)) return;
-          if (may_touch(points, triangles[i], triangles[other])) {
-            found[b].emplace_back(static_cast<std::uint32_t>(i), other);
-            ++of_this;
-          }
+          if (other <= i || of_this == max_of_one || alone[other] == TriangleContact::collapsed) return;
+          const bool known = alone[i] == TriangleContact::none && alone[other] == TriangleContact::none;
+          const TriangleContact contact = slabs.apart(set[other].corners) ? TriangleContact::none
+                                          : known ? contact_between(points, triangles[i], triangles[other])
+                                                  : TriangleContact::unknown;
+          if (contact == TriangleContact::none) return;
+          found[b].push_back({own, other, contact});
+          ++of_this;
         });
       }
       std::sort(found[b].begin(), found[b].end());
     }
   });
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
+  std::vector<TrianglePair> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   if (all.size() > most) all.resize(most);
   return all;

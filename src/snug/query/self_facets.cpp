@@ -1,0 +1,173 @@
+#include <snug/query/self_facets.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include <snug/geometry/exact_sign.h>
+#include <snug/geometry/triangle_distance.h>
+#include <snug/search/facet.h>
+#include <snug/search/self_contact.h>
+#include <snug/surface/evaluate.h>
+#include <support/run.h>
+
+namespace snug {
+namespace {
+
+using FacetNames = std::array<std::uint32_t, 3>;
+
+// Corners of a polygon that is looked at; comparing each with each edge takes their square.
+constexpr std::size_t max_polygon = 64;
+
+// The faces, cut into triangles of the mesh's vertices.
+struct FacetMesh {
+  std::vector<FacetNames> triangles;
+  std::vector<std::uint32_t> faces;  // that each belongs to
+};
+
+// Does each edge have all other corners on its left, exactly, in one plane?
+bool convex_in_plane(std::span<const Point3> all, std::span<const VertexId> face) {
+  const auto at = [&](std::size_t k) -> const Point3& { return all[face[k % face.size()].index()]; };
+  Projection plane;
+  int turn = 0;
+  for (std::size_t i = 0; i < 3 && turn == 0; ++i) {
+    plane = {i, (i + 1) % 3};
+    turn = orientation(at(0), at(1), at(2), plane);
+  }
+  if (turn == 0) return false;
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    if (orientation(at(0), at(1), at(2), at(k)) != 0) return false;
+    for (std::size_t other = k + 2; other < k + face.size(); ++other) {
+      if (orientation(at(k), at(k + 1), at(other), plane) != turn) return false;
+    }
+  }
+  return true;
+}
+
+bool may_be_compared(const LimitSurface& surface, std::span<const VertexId> face, PatchId patch) {
+  if (!is_between_corners(surface, patch)) return false;
+  const PowerOfTwo scale = surface.scale();
+  for (const VertexId v : face) {
+    const Point3& p = surface.mesh().points[v.index()];
+    if (!may_be_signed(surface.scaled_point(v)) || !scale.exact(p.x) || !scale.exact(p.y) ||
+        !scale.exact(p.z))
+      return false;
+  }
+  return face.size() == 3 || (face.size() <= max_polygon && convex_in_plane(surface.scaled_points(), face));
+}
+
+class FacetContacts {
+ public:
+  FacetContacts(const LimitSurface& surface, const FacetMesh& mesh) : surface_(surface), mesh_(mesh) {}
+
+  [[nodiscard]] SelfContactPair pair_of(const TrianglePair& found) const {
+    const bool touching =
+        found.contact == TriangleContact::touching || found.contact == TriangleContact::collapsed;
+    SelfContactPair pair{SelfVerdict::intersecting, touching, {}, {0, 0}};
+    const Point3 at = common_point(found);
+    for (std::size_t s = 0; s < 2; ++s) {
+      pair.points[s] = evaluate(surface_, place_near(mesh_.faces[s == 0 ? found.a : found.b], at));
+    }
+    return pair;
+  }
+
+ private:
+  [[nodiscard]] Triangle triangle(std::uint32_t t) const {
+    Triangle corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = surface_.scaled_points()[mesh_.triangles[t][k]];
+    return corners;
+  }
+
+  // A point of both, in double precision, beside the vertices that both name: the best one of other corners, of points where edges
+  // between these pass through the other plane, and of points where these are nearest to the other triangle.
+  [[nodiscard]] Point3 common_point(const TrianglePair& found) const {
+    const std::array<Triangle, 2> t{triangle(found.a), triangle(found.b)};
+    const std::array<FacetNames, 2> names{mesh_.triangles[found.a], mesh_.triangles[found.b]};
+    double least = INFINITY;
+    Point3 result = t[0][0];
+    const auto consider = [&](const Point3& p) {
+      const double apart = distance_between(p, t[0], 1).upper + distance_between(p, t[1], 1).upper;
+      if (!(apart < least)) return;
+      least = apart;
+      result = p;
+    };
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Triangle& other = t[1 - s];
+      const Vector3 normal = cross(other[1] - other[0], other[2] - other[0]);
+      std::vector<Point3> own, common;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const bool both =
+            std::find(names[1 - s].begin(), names[1 - s].end(), names[s][k]) != names[1 - s].end();
+        (both ? common : own).push_back(t[s][k]);
+      }
+      if (own.size() == 1) {  // near the common edge
+        const Point3 middle = common[0] + 0.5 * (common[1] - common[0]);
+        for (double share = 0.5; share > 0x1p-20; share *= 0.5) consider(middle + share * (own[0] - middle));
+      }
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        const Point3 &p = own[k], &q = own[(k + 1) % own.size()];
+        consider(p);
+        const double of_p = dot(normal, p - other[0]), of_q = dot(normal, q - other[0]);
+        if (of_p * of_q < 0) consider(p + of_p / (of_p - of_q) * (q - p));
+        const NearestTriangles near = nearest({p, q, q}, other);
+        consider(other[0] + near.on_b.b * (other[1] - other[0]) + near.on_b.c * (other[2] - other[0]));
+      }
+    }
+    return result;
+  }
+
+  [[nodiscard]] Place place_near(std::uint32_t face, const Point3& point) const {
+    Place place{face, 0, 0, 0};
+    double least = INFINITY;
+    const auto [begin, end] = surface_.patches_of(face);
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::optional<Facet> facet = facet_of(surface_, PatchId(p));
+      if (!facet) continue;
+      const PointTriangleDistance found = distance_between(point, facet->triangle, 1);
+      if (!(found.upper < least)) continue;
+      least = found.upper;
+      const TriangleParameter at = facet->place_of(found.foot);
+      place = {face, facet->corner, at.u, at.v};
+    }
+    return place;
+  }
+
+  const LimitSurface& surface_;
+  const FacetMesh& mesh_;
+};
+
+}  // namespace
+
+ComparedFacets compare_facets(const LimitSurface& surface, int threads, const WorkMonitor& monitor) {
+  const Topology& topology = surface.topology();
+  ComparedFacets result{std::vector<bool>(topology.face_count()), surface.rules().primal, {}};
+  result.answer.verdict = SelfVerdict::clear;
+  if (!surface.rules().primal) return result;
+  FacetMesh mesh;
+  for (std::uint32_t f = 0; f < topology.face_count(); ++f) {
+    monitor.checkpoint();
+    const auto [begin, end] = surface.patches_of(f);
+    if (begin == end || !surface.has_patch(PatchId(begin))) continue;
+    const std::span<const VertexId> face = topology.face(FaceId(f));
+    result.faces[f] = may_be_compared(surface, face, PatchId(begin));
+    result.all = result.all && result.faces[f];
+    for (std::size_t k = 2; result.faces[f] && k < face.size(); ++k) {
+      mesh.triangles.push_back({face[0].value(), face[k - 1].value(), face[k].value()});
+      mesh.faces.push_back(f);
+    }
+  }
+  std::vector<TrianglePair> found =
+      self_contacts(surface.scaled_points(), mesh.triangles, SIZE_MAX, threads, monitor);
+  if (!found.empty()) result.answer.verdict = SelfVerdict::intersecting;
+  // Crossings first.
+  std::stable_sort(found.begin(), found.end(),
+                   [](const TrianglePair& x, const TrianglePair& y) { return x.contact < y.contact; });
+  const FacetContacts contacts(surface, mesh);
+  for (const TrianglePair& pair : found) {
+    if (result.answer.pairs.size() == SelfContact::max_pairs) break;
+    result.answer.pairs.push_back(contacts.pair_of(pair));
+  }
+  return result;
+}
+
+}  // namespace snug
