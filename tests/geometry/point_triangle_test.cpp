@@ -107,9 +107,11 @@ TEST(point_triangle, bounds_hold_and_are_some_roundings_apart) {
 }
 
 TEST(facing, of_facets_at_a_corner_the_steepest_edge_counts_first) {
-  // Two facets above and below each other on one side of a corner, as those of a thin wing.
-  const Triangle above{{{0, 0, 0}, {1, -1, -0.1}, {1, 1, -0.1}}}, below{{{0, 0, 0}, {1, 1, -1}, {1, -1, -1}}};
+  // A steep facet over a flatter one, on one side of a corner: it is steep the other way.
+  const Triangle above{{{0, 0, 0}, {1, 0, -0.35}, {0.98, 0.2, -0.73}}},
+      below{{{0, 0, 0}, {1, 0.2, -0.5}, {1, -0.2, -0.5}}};
   const Point3 point{0, 0, 1};
+  EXPECT_LT(facing(point, above, {0, 0}).cosine, facing(point, below, {0, 0}).cosine);
   EXPECT_TRUE(facing(point, above, {0, 0}).better_than(facing(point, below, {0, 0})));
   EXPECT_FALSE(facing(point, below, {0, 0}).better_than(facing(point, above, {0, 0})));
   // At an edge the one that is seen more from above.
