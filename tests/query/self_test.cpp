@@ -327,6 +327,25 @@ TEST(self_contact, of_plane_polygons_is_decided_exactly) {
     EXPECT_EQ(ask(meshes::prism(n), Scheme::bilinear).verdict, SelfVerdict::clear) << n;
 }
 
+// The diagonal of a quad is no edge, though another face has one there.
+TEST(self_contact, of_a_face_with_an_edge_in_a_polygon_is_found) {
+  for (std::uint32_t turn = 0; turn < 4; ++turn) {
+    oracle::TaggedMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}, {2, 2, 1}};
+    mesh.polygons = {{turn, (turn + 1) % 4, (turn + 2) % 4, (turn + 3) % 4}, {0, 2, 4}};
+    const SelfContact found = ask(mesh, Scheme::bilinear);
+    EXPECT_EQ(found.verdict, SelfVerdict::intersecting) << turn;
+    EXPECT_TRUE(found.pairs[0].touching) << turn;
+    // Of two quads it is the diagonal of both.
+    mesh.polygons[1] = {0, 4, 2, 5};
+    mesh.points[5] = {0.5, 0.5, -1};
+    EXPECT_EQ(ask(mesh, Scheme::bilinear).verdict, SelfVerdict::intersecting) << turn;
+    // An edge of both is none of that.
+    mesh.polygons[1] = {0, 1, 4};
+    EXPECT_EQ(ask(mesh, Scheme::bilinear).verdict, SelfVerdict::clear) << turn;
+  }
+}
+
 // A facet without area has two parameters with one point.
 TEST(self_contact, of_a_facet_without_area_is_one_with_itself) {
   oracle::TaggedMesh mesh;

@@ -56,6 +56,43 @@ bool may_be_compared(const LimitSurface& surface, std::span<const VertexId> face
   return face.size() == 3 || (face.size() <= max_polygon && convex_in_plane(surface.scaled_points(), face));
 }
 
+// Triangles of different faces that both name a cut through the inside of one: all of it is a contact, though names say that it is an
+// edge of both. A pair for each cut.
+std::vector<TrianglePair> along_cuts(const FacetMesh& mesh) {
+  struct Side {
+    std::array<std::uint32_t, 2> ends;
+    std::uint32_t triangle;
+    bool cut;
+  };
+  std::vector<Side> sides;
+  const std::size_t count = mesh.triangles.size();
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const bool first = t == 0 || mesh.faces[t - 1] != mesh.faces[t],
+               last = t + 1 == count || mesh.faces[t + 1] != mesh.faces[t];
+    const FacetNames& names = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(names[k], names[(k + 1) % 3]);
+      sides.push_back({{low, high}, t, (k == 0 && !first) || (k == 2 && !last)});
+    }
+  }
+  if (std::none_of(sides.begin(), sides.end(), [](const Side& side) { return side.cut; })) return {};
+  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return x.ends != y.ends ? x.ends < y.ends : x.cut != y.cut ? x.cut : x.triangle < y.triangle;
+  });
+  std::vector<TrianglePair> found;
+  for (std::size_t i = 0, end; i < sides.size(); i = end) {
+    end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    for (std::size_t j = i + 1; sides[i].cut && j < end; ++j) {
+      const auto [low, high] = std::minmax(sides[i].triangle, sides[j].triangle);
+      if (mesh.faces[low] == mesh.faces[high]) continue;
+      found.push_back({low, high, TriangleContact::touching});
+      break;
+    }
+  }
+  return found;
+}
+
 class FacetContacts {
  public:
   FacetContacts(const LimitSurface& surface, const FacetMesh& mesh) : surface_(surface), mesh_(mesh) {}
@@ -158,6 +195,8 @@ ComparedFacets compare_facets(const LimitSurface& surface, int threads, const Wo
   }
   std::vector<TrianglePair> found =
       self_contacts(surface.scaled_points(), mesh.triangles, SIZE_MAX, threads, monitor);
+  const std::vector<TrianglePair> cuts = along_cuts(mesh);
+  found.insert(found.end(), cuts.begin(), cuts.end());
   if (!found.empty()) result.answer.verdict = SelfVerdict::intersecting;
   // Crossings first.
   std::stable_sort(found.begin(), found.end(),
