@@ -50,6 +50,8 @@ ExactRow exact_row(const Point3& from, const Point3& to) {
 }
 
 int exact_orientation(const Point3& a, const Point3& b, const Point3& c, const Point3& d) {
+  // Neighbours in a mesh have a corner in common.
+  if (d == a || d == b || d == c) return 0;
   const ExactRow x = exact_row(a, b), y = exact_row(a, c), z = exact_row(a, d);
   ExactSum sum;
   for (std::size_t i = 0; i < 3; ++i) {

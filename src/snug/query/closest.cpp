@@ -129,10 +129,11 @@ class ClosestSearch {
     const double coordinates = std::max(facet.largest, max_abs(to_.at - Point3{})),
                  off = enlarged(facet.off + 2 * spatial_error(to_.error));
     const PointTriangleDistance found = distance_between(to_.at, facet.triangle, coordinates);
-    gap_ = std::max(gap_, found.lower - off);
+    gap_ = std::max(gap_, found.lower);
+    bounds_.loosen(off);
     if (gap_ > bounds_.upper()) return;
     const Facing facing = snug::facing(to_.at, facet.triangle, found.foot);
-    if (!(found.upper + off < closest_.least) && !facing.better_than(closest_.facing)) return;
+    if (!(found.upper < closest_.least) && !facing.better_than(closest_.facing)) return;
     const TriangleParameter at = facet.place_of(found.foot);
     const BoundedPoint point = facet.point(at);
     const double upper = distance_at_most(point.position - to_.at, spatial_error(point.error + to_.error));

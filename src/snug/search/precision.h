@@ -48,10 +48,12 @@ class DistanceBounds {
   }
 
   [[nodiscard]] double upper() const { return upper_; }
-  [[nodiscard]] double lower() const { return std::min(std::max(pruned_, floor_), upper_); }
+  [[nodiscard]] double lower() const { return std::min(std::max(pruned_, floor_), upper_) - slack_; }
   [[nodiscard]] double precision() const { return std::max(absolute_, relative_ * upper_); }
   /// Distance beyond which pairs are pruned.
   [[nodiscard]] double prune_distance() const { return upper_ == INFINITY ? INFINITY : upper_ - precision(); }
+  /// Parts were pruned by sets that hold them only up to this.
+  void loosen(double slack) { slack_ = std::max(slack_, slack); }
   /// The distance is at least this, whatever is left to be searched.
   void raise_lower(double floor) { floor_ = std::max(floor_, floor); }
   /// Can the rest of the search be skipped?
@@ -63,7 +65,7 @@ class DistanceBounds {
 
  private:
   double absolute_, relative_;
-  double upper_ = INFINITY, pruned_ = INFINITY, floor_ = 0;
+  double upper_ = INFINITY, pruned_ = INFINITY, floor_ = 0, slack_ = 0;
 };
 
 }  // namespace snug
