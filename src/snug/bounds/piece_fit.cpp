@@ -156,7 +156,8 @@ PieceFit answer(const Patch& patch, const PatchFrame& frame, const PartShape* co
 void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
   split_all();
   const std::size_t parts = parts_of_each_ * patches_.size();
-  std::vector<std::uint64_t> by_kind(parts);
+  thread_local std::vector<std::uint64_t> by_kind;
+  by_kind.resize(parts);
   for (std::size_t i = 0; i < parts; ++i) by_kind[i] = std::uint64_t{part(i).kind->id().value()} << 32 | i;
   std::sort(by_kind.begin(), by_kind.end());
   order_.resize(parts);
@@ -165,10 +166,11 @@ void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
   shapes_.resize(parts);
   frames_.resize(patches_.size());
   bounds_.resize(parts);
-  std::vector<const Patch*> of_kind;
-  std::vector<PartShape*> shapes;
-  std::vector<kernels::PlacedPart> placed;
-  std::vector<PartBounds*> bounds;
+  // Kept from call to call: a warm frame takes no memory.
+  thread_local std::vector<const Patch*> of_kind;
+  thread_local std::vector<PartShape*> shapes;
+  thread_local std::vector<kernels::PlacedPart> placed;
+  thread_local std::vector<PartBounds*> bounds;
   for (PartBounds& part_bounds : bounds_) part_bounds.error = -1;
   for_each_kind(library, [&](const PartRows& rows, std::span<const std::uint32_t> which) {
     of_kind.clear();

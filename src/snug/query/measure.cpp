@@ -428,7 +428,13 @@ class SurfaceMeasurer {
     if (closed_) weight_ = estimate_ / std::max(std::fabs(volume_), relative * size_ * size_ * size_);
     Answer answer;
     for (int round = 0; round < max_quadratic_rounds; ++round) {
-      const bool some = round_of(gap, tips, round);
+      // Patches may be narrower than was asked for, and the answer is not.
+      bool some = round_of(gap, tips, round);
+      while (!some && gap + tips > 0 && !all_stuck()) {
+        gap *= 0.5;
+        tips *= 0.5;
+        some = round_of(gap, tips, round);
+      }
       if (round > 0 && !some) break;
       answer = answer_of(totals(), origin_, size_, relative, closed_);
       if (answer.area_excess <= 1 && answer.solid_excess <= 1) break;
@@ -492,6 +498,11 @@ class SurfaceMeasurer {
           if (round == 0) monitor_.report(static_cast<double>(count) / static_cast<double>(open.size()));
         });
     return !open.empty();
+  }
+
+  [[nodiscard]] bool all_stuck() const {
+    return std::all_of(results_.begin(), results_.end(),
+                       [](const PatchMeasures& patch) { return patch.stuck; });
   }
 
   [[nodiscard]] Totals totals() const {

@@ -155,7 +155,8 @@ PieceBuild build_alone(BoundsCache& library, const Patch& patch, BoundMethod met
 
 void build_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
                   std::span<PieceBuild> out) {
-  std::vector<PieceFit> fits(patches.size());
+  thread_local std::vector<PieceFit> fits;
+  fits.resize(patches.size());
   if (method == BoundMethod::rows) fit_pieces(library, patches, fits);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const bool fitted = method == BoundMethod::rows && fits[i].offset.radius >= 0;
