@@ -201,4 +201,12 @@ void PieceSet::prepare(int threads) {
   tree_ = std::make_shared<const Tree>(Tree{std::move(nodes), std::move(leaves)});
 }
 
+PieceSet::SlackBox::SlackBox(const Obb& of)
+    : box{of.centre, {}}, slack(0x1p-21 * (of.half.x + of.half.y + of.half.z)) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.box.half[k] = static_cast<float>(of.half[k]);
+    for (std::size_t a = 0; a < 3; ++a) box.box.axes[k][a] = static_cast<float>(of.axes[k][a]);
+  }
+}
+
 }  // namespace snug

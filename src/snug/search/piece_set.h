@@ -59,9 +59,33 @@ class PieceSet {
   /// make `reach` smaller. Did one return true?
   /// Requires:  prepared().
   template <class Visit>
-  bool visit_near(const Point3& p, double& reach, const Visit& visit) const;
+  bool visit_near(const Point3& p, double& reach, const Visit& visit) const {
+    return visit_by([&](const WideNode& node, WideNode::Distances& gaps) { node.distances(p, 0, gaps); },
+                    reach, visit);
+  }
+  /// The same for those whose boxes may meet another box.
+  /// Requires:  a box that is finite.
+  template <class Visit>
+  bool visit_near(const Obb& box, const Visit& visit) const {
+    const SlackBox seen(box);
+    double reach = 0;
+    return visit_by(
+        [&](const WideNode& node, WideNode::Distances& gaps) {
+          static_cast<void>(node.distances(seen.box, seen.slack, 0, gaps));
+        },
+        reach, visit);
+  }
 
  private:
+  // In single precision, and what that may lose.
+  struct SlackBox {
+    explicit SlackBox(const Obb& of);
+    PlacedBox box;
+    double slack;
+  };
+  template <class Gaps, class Visit>
+  bool visit_by(const Gaps& find_gaps, double& reach, const Visit& visit) const;
+
   struct Tree {
     WideBvh nodes;
     std::vector<WideNode> leaves;  // boxes around the pieces of each leaf
@@ -79,8 +103,8 @@ class PieceSet {
   std::shared_ptr<const Tree> tree_;
 };
 
-template <class Visit>
-bool PieceSet::visit_near(const Point3& p, double& reach, const Visit& visit) const {
+template <class Gaps, class Visit>
+bool PieceSet::visit_by(const Gaps& find_gaps, double& reach, const Visit& visit) const {
   struct Near {
     float gap;
     std::uint32_t name;
@@ -91,7 +115,7 @@ bool PieceSet::visit_near(const Point3& p, double& reach, const Visit& visit) co
   const auto is_near = [&](float gap) { return static_cast<double>(gap) <= reach; };
   const auto open = [&](const WideNode& node) {
     WideNode::Distances gaps;
-    node.distances(p, 0, gaps);
+    find_gaps(node, gaps);
     const std::size_t begin = waiting;
     for (std::size_t i = 0; i < node.count(); ++i) {
       if (!is_near(gaps[i])) continue;
@@ -113,7 +137,7 @@ bool PieceSet::visit_near(const Point3& p, double& reach, const Visit& visit) co
     const std::uint32_t leaf = near.name & ~WideBvh::leaf_bit;
     const std::span<const std::uint32_t> items = tree_->nodes.leaf(leaf);
     WideNode::Distances gaps;
-    tree_->leaves[leaf].distances(p, 0, gaps);
+    find_gaps(tree_->leaves[leaf], gaps);
     for (std::uint32_t left = (1u << items.size()) - 1; left != 0;) {
       auto next = static_cast<std::size_t>(std::countr_zero(left));
       for (std::size_t i = next + 1; i < items.size(); ++i) {
