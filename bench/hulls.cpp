@@ -1,4 +1,4 @@
-// bench_hulls: both hulls of solids within 1 % of their size, verified. Files: closed models.
+// bench_hulls: both hulls of solids, and envelopes, within 1 % of their size, verified. Files: closed models.
 
 #include <cmath>
 #include <string>
@@ -27,6 +27,15 @@ int main(int argc, char** argv) {
       });
     }
     group.run();
+    Group wraps(model.name + ", envelope within " + std::to_string(share) + " of the size, verified",
+                "envelope", options);
+    for (const int threads : {1, 2}) {
+      wraps.add("envelope, threads: " + std::to_string(threads), 1, [&, threads] {
+        const Envelope e = envelope(surface, {.error = share * surface.size()}, {.threads = threads});
+        return e.outcome == Outcome::complete ? static_cast<double>(e.triangles.size()) : NAN;
+      });
+    }
+    wraps.run();
   }
   return 0;
 }

@@ -14,7 +14,14 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, error, part;
+  std::string mesh, error, clearance, part;
+};
+
+// The triangles, and what is proved of them.
+struct Found {
+  Hulls hulls;  // the outer one
+  std::optional<Interval> volume;
+  double clearance = 0;  // 0 where they do not touch the surface, and no more is known
 };
 
 // Where a part is: its surface and the envelope are `clearance` apart; nothing where it is undecided whether
@@ -77,19 +84,56 @@ void write_fit(Report& report, const Options& options, const Fit& fit) {
 }
 
 void write_summary(Report& report, const Options& options, const Surface& surface, double error,
-                   const Hulls& found) {
+                   const Found& found) {
+  const std::optional<Hull>& outer = found.hulls.outer;
+  const bool complete = found.hulls.outcome == Outcome::complete;
   if (report.json()) {
-    report.write().field("error", error).key("envelope");
-    write_hull(report.write(), found.outer);
+    JsonWriter& json = report.write();
+    json.field("error", error).field("clearance", found.clearance).key("envelope");
+    write_hull(json, outer);
+    json.key("volume");
+    if (complete && found.volume) {
+      json.begin_array().value(found.volume->lower).value(found.volume->upper).end_array();
+    } else {
+      json.null();
+    }
   }
-  if (found.outcome == Outcome::complete) {
-    report.text(
-        fmt::format("{}: {} triangles around the solid, proved closed and not to touch its limit surface, at "
-                    "most {} from it",
-                    options.output.empty() ? "envelope" : options.output, found.outer->triangles.size(),
-                    text_at_most(found.outer->gap, true)));
+  if (complete) {
+    const std::string apart = found.clearance > 0
+                                  ? fmt::format("at least {} and", text_at_most(found.clearance))
+                                  : "not to touch its limit surface,";
+    report.text(fmt::format("{}: {} triangles around the surface, proved closed and {} at most {} from {}",
+                            options.output.empty() ? "envelope" : options.output, outer->triangles.size(),
+                            apart, text_at_most(outer->gap, true),
+                            found.clearance > 0 ? "its limit surface" : "it"));
   }
-  write_verdict(report, found, surface.traits().owner());
+  write_verdict(report, found.hulls, surface.traits().owner());
+}
+
+// A wrap; the outer hull of a solid where the error is too small for that.
+Found find(const Surface& surface, const Options& options, double error, const WorkMonitor& monitor) {
+  EnvelopeOptions how{.error = error};
+  how.single_precision = !options.output.empty() && format_of(options.output).floats;
+  if (!options.clearance.empty()) {
+    how.clearance = parse_length(options.clearance, "--clearance").in_mesh_units(surface.size());
+  }
+  Envelope wrap = envelope(surface, how, run_of(options, monitor));
+  Found found;
+  if (wrap.outcome == Outcome::budget_spent && !how.clearance && !surface.open_reason() &&
+      count_elements(surface.mesh(), surface.scheme()).many_sided_edges == 0) {
+    found.hulls = hull(surface, {.error = error, .inner = false, .single_precision = how.single_precision},
+                       run_of(options, monitor));
+    return found;
+  }
+  found.clearance = wrap.clearance;
+  found.volume = wrap.volume;
+  found.hulls.outcome = wrap.outcome;
+  found.hulls.problems = std::move(wrap.problems);
+  found.hulls.outer = Hull{.positions = std::move(wrap.positions),
+                           .triangles = std::move(wrap.triangles),
+                           .owners = {},
+                           .gap = error};
+  return found;
 }
 
 ExitStatus run(const Options& options) {
@@ -101,29 +145,24 @@ ExitStatus run(const Options& options) {
   to_standard_output.output.clear();
   Report report("envelope", to_standard_output);
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  HullOptions how{.inner = false};
-  how.single_precision = !options.output.empty() && format_of(options.output).floats;
-  Hulls found;
+  Found found;
+  double error = 0;
   ProgressBar bar("making an envelope of " + options.mesh, options.quiet);
   const WorkMonitor monitor = bar.monitor();
   naming(options.mesh, [&] {
-    how.error = parse_length(options.error, "--error").in_mesh_units(surface.size());
-    require_closed(surface);
-    if (count_elements(surface.mesh(), surface.scheme()).many_sided_edges > 0) {
-      throw InputError(InputProblem::refused,
-                       "envelope: edges of more than two faces have no envelope; 'snug info' lists them");
-    }
-    found = hull(surface, how, run_of(options, monitor));
+    error = parse_length(options.error, "--error").in_mesh_units(surface.size());
+    found = find(surface, options, error, monitor);
   });
+  const bool complete = found.hulls.outcome == Outcome::complete;
   std::optional<Fit> fit;
-  if (part && found.outcome == Outcome::complete)
-    naming(options.part, [&] { fit = fit_of(*part, *found.outer, options, monitor); });
-  write_summary(report, options, surface, *how.error, found);
+  if (part && complete)
+    naming(options.part, [&] { fit = fit_of(*part, *found.hulls.outer, options, monitor); });
+  write_summary(report, options, surface, error, found);
   if (fit) write_fit(report, options, *fit);
-  const bool reached = found.outcome == Outcome::complete && (!fit || fit->inside);
-  if (options.output.empty() || found.outcome != Outcome::complete) return report.finish(reached);
+  const bool reached = complete && (!fit || fit->inside);
+  if (options.output.empty() || !complete) return report.finish(reached);
   AtomicFile file(options.output);
-  write_facets(mesh_of(*found.outer), file, options.output, options);
+  write_facets(mesh_of(*found.hulls.outer), file, options.output, options);
   return report.finish(reached, {&file});
 }
 
@@ -131,24 +170,26 @@ ExitStatus run(const Options& options) {
 
 Command envelope_command() {
   auto options = std::make_shared<Options>();
-  options->max_splits = default_splits::hull;
+  options->max_splits = default_splits::envelope;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh of a solid (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input), open or closed");
   list.add(Group::own, "--error LENGTH", &options->error,
-           "Largest distance between limit surface and envelope, either way; mesh units or percent, such as "
+           "Largest distance of the envelope's points from the limit surface; mesh units or percent, such as "
            "1%")
       .formerly("--tolerance");
+  list.add(Group::own, "--clearance LENGTH", &options->clearance,
+           "Their least distance; mesh units or percent. Default: a quarter of the error");
   list.add(
       Group::own, "--part FILE", &options->part,
       "Report whether the limit surface of this control mesh lies inside the envelope, and how far from it");
   add_common_options(list, *options);
-  list.add(Group::effort, "--max-splits N", &options->max_splits, "At most N triangles in the envelope")
+  list.add(Group::effort, "--max-splits N", &options->max_splits, "At most N cubes in which it is sampled")
       .formerly("--budget");
   return {
       "envelope",
       Topic::files,
-      "Write a closed mesh around the solid bounded by a limit surface, proved not to touch it",
+      "Write a closed mesh around a limit surface of any sort, proved to keep a clearance",
       {"snug envelope pawn.obj --error 1% -o around.stl", "snug envelope pawn.obj --error 2% --part pin.obj"},
       std::move(list),
       [options] { return run(*options); }};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <snug/surface.h>
@@ -72,5 +73,44 @@ struct Hulls {
 /// Source:    [Wu05, sec. 5.2]; differs: planes of whole facets, verified, derivations/hulls.md.
 [[nodiscard]] SNUG_API Hulls hull(const Surface& surface, const HullOptions& options = {},
                                   const Run& run = {});
+
+struct EnvelopeOptions {
+  /// > 0, mesh units: largest distance of the envelope's points from the surfaces. Default: 1 % of the largest side of
+  /// the box around all of them.
+  std::optional<double> error{};
+  /// >= 0, mesh units, less than `error`: their least distance. Default: a quarter of the error.
+  std::optional<double> clearance{};
+  bool single_precision = false;  ///< round coordinates to floats, for formats that store floats
+};
+
+/// Closed meshes around limit surfaces, oriented outward.
+struct Envelope {
+  std::vector<Point3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double error = 0, clearance = 0;      ///< those that were asked for
+  Interval volume;                      ///< contains that of the solid that it bounds
+  Outcome outcome = Outcome::complete;  ///< do all guarantees of envelope() hold? Else they may not
+  std::vector<HullProblem> problems;    ///< unless `complete`, some of the failures
+};
+
+/// One watertight mesh around surfaces of any sort: open, through themselves or each other, not manifold, many parts.
+/// Holes and gaps narrower than about `error` + `clearance` are bridged; cavities that the outside does not reach are filled.
+///
+/// Guarantee: if `complete`, all points of the surfaces lie in the solid that it bounds; each point of it is at least `clearance`
+///            and at most `error` from the surfaces; each edge belongs to two triangles, one along it each way, and triangles have
+///            nothing else in common than vertices and edges that they share. Everything was proved from the returned doubles,
+///            not from how they were found. It is not said that it is nowhere farther from the surfaces' points than that: those
+///            inside of others may be anywhere.
+/// Budget:    4,000,000 cubes in which it is sampled, some (area / error^2); 200 bytes each,
+///            and as much for pieces.
+/// Errors:    InputError: (value) without surfaces, for an error that is not finite and positive, too small for doubles or
+///            floats, or above half the size, and for a clearance that is not below it; (refused) if a mesh has no face with a limit
+///            surface; (unrepresentable). Interrupted.
+/// Cost:      some 5 microseconds a cube.
+/// Source:    derivations/envelopes.md.
+[[nodiscard]] SNUG_API Envelope envelope(std::span<const PlacedSurface> parts,
+                                         const EnvelopeOptions& options = {}, const Run& run = {});
+[[nodiscard]] SNUG_API Envelope envelope(const PlacedSurface& part, const EnvelopeOptions& options = {},
+                                         const Run& run = {});
 
 }  // namespace snug

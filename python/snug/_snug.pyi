@@ -160,6 +160,16 @@ class Surface(_Tagged):
         threads: int = 0,
         progress: Progress = None,
     ) -> Hulls: ...
+    def envelope(
+        self,
+        error: Length = None,
+        *,
+        clearance: Length = None,
+        max_splits: Optional[int] = None,
+        single_precision: bool = False,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> Envelope: ...
     def measure(
         self, *, relative: Optional[float] = None, max_splits: Optional[int] = None, threads: int = 0, progress: Progress = None
     ) -> Measures: ...
@@ -387,6 +397,22 @@ class Tessellation(_Triangles):
 class Hull(_Triangles):
     @property
     def gap(self) -> float: ...
+
+class Envelope:
+    @property
+    def vertices(self) -> Floats: ...
+    @property
+    def faces(self) -> Ids: ...
+    @property
+    def error(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+    @property
+    def volume(self) -> Tuple[float, float]: ...
+    @property
+    def outcome(self) -> str: ...
+    @property
+    def problems(self) -> List[Dict[str, Any]]: ...
 
 class Hulls:
     @property

@@ -27,6 +27,9 @@ auto members_of(Either<Tessellation> auto& t) {
                   t.error_bound, t.outcome);
 }
 auto members_of(Either<Hull> auto& t) { return std::tie(t.positions, t.triangles, t.owners, t.gap); }
+auto members_of(Either<Envelope> auto& t) {
+  return std::tie(t.positions, t.triangles, t.error, t.clearance, t.volume, t.outcome, t.problems);
+}
 auto members_of(Either<Hulls> auto& t) { return std::tie(t.inner, t.outer, t.outcome, t.problems, t.closed); }
 
 }  // namespace snug
@@ -161,10 +164,12 @@ void add_triangles(Class& cls) {
          "Corners, (n, 3) float64, mesh units.")
       .def_property_readonly(
           "faces", [](const py::object& self) { return column(self.cast<const T&>().triangles, self); },
-          "Triangles, (m, 3) uint32.")
-      .def_property_readonly(
-          "owners", [](const py::object& self) { return column(self.cast<const T&>().owners, self); },
-          "Of each triangle the face of the surface (of dual schemes the vertex), (m,) uint32.");
+          "Triangles, (m, 3) uint32.");
+  if constexpr (requires(const T& mesh) { mesh.owners; }) {
+    cls.def_property_readonly(
+        "owners", [](const py::object& self) { return column(self.cast<const T&>().owners, self); },
+        "Of each triangle the face of the surface (of dual schemes the vertex), (m,) uint32.");
+  }
 }
 
 Tessellation tessellated(const PySurface& self, const py::object& error, const py::object& max_edge,
@@ -271,11 +276,59 @@ Hulls hulls_of(const PySurface& self, const py::object& error, bool inner, bool 
   return call.run([&](const Run& run) { return hull(surface, options, run); });
 }
 
+Envelope envelope_of(const PySurface& self, const py::object& error, const py::object& clearance,
+                     const py::object& max_splits, bool single_precision, const py::object& threads,
+                     const py::object& progress) {
+  const Surface surface = self.surface();
+  EnvelopeOptions options;
+  options.error = length_of(error, surface.size(), "error");
+  options.clearance = length_of(clearance, surface.size(), "clearance");
+  options.single_precision = single_precision;
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) { return envelope(surface, options, run); });
+}
+
 // None, or the hull within its hulls, whose memory it keeps.
 py::object hull_in(const py::object& object, std::optional<Hull> Hulls::*which) {
   const Hulls& self = object.cast<const Hulls&>();
   if (!(self.*which)) return py::none();
   return py::cast(&*(self.*which), py::return_value_policy::reference_internal, object);
+}
+
+py::list problems_in(const std::vector<HullProblem>& problems) {
+  py::list list;
+  for (const HullProblem& problem : problems) {
+    py::dict each;
+    each["fault"] = name_of(problem.fault);
+    each["inner"] = problem.inner;
+    each["place"] = py::make_tuple(problem.place.x, problem.place.y, problem.place.z);
+    each["face"] = problem.owner ? py::object(py::int_(*problem.owner)) : py::object(py::none());
+    list.append(each);
+  }
+  return list;
+}
+
+void add_envelope(py::module_& module) {
+  py::class_<Envelope> cls(module, "Envelope", "A closed mesh around a surface.");
+  add_triangles(cls);
+  cls.def_property_readonly(
+         "error", [](const Envelope& self) { return self.error; },
+         "No point of it is farther than this from the surface.")
+      .def_property_readonly(
+          "clearance", [](const Envelope& self) { return self.clearance; }, "And none is nearer than this.")
+      .def_property_readonly(
+          "volume", [](const Envelope& self) { return py::make_tuple(self.volume.lower, self.volume.upper); },
+          "That of the solid that it bounds, as an interval.")
+      .def_property_readonly(
+          "outcome", [](const Envelope& self) { return name_of(self.outcome); },
+          "'complete': all guarantees hold; else 'budget-spent' or 'at-rounding'.")
+      .def_property_readonly(
+          "problems", [](const Envelope& self) { return problems_in(self.problems); },
+          "Unless 'complete', some of the failures, as those of Hulls.")
+      .def("__repr__", [](const Envelope& self) {
+        return "<snug.Envelope of " + std::to_string(self.triangles.size()) + " triangles, from " +
+               text_of(self.clearance) + " to " + text_of(self.error) + ">";
+      });
 }
 
 void add_hulls(py::module_& module) {
@@ -305,19 +358,7 @@ void add_hulls(py::module_& module) {
       .def_property_readonly(
           "closed", [](const Hulls& self) { return self.closed; }, "Does the surface bound a solid?")
       .def_property_readonly(
-          "problems",
-          [](const Hulls& self) {
-            py::list list;
-            for (const HullProblem& problem : self.problems) {
-              py::dict each;
-              each["fault"] = name_of(problem.fault);
-              each["inner"] = problem.inner;
-              each["place"] = py::make_tuple(problem.place.x, problem.place.y, problem.place.z);
-              each["face"] = problem.owner ? py::object(py::int_(*problem.owner)) : py::object(py::none());
-              list.append(each);
-            }
-            return list;
-          },
+          "problems", [](const Hulls& self) { return problems_in(self.problems); },
           "Unless complete, some of the places: dicts with fault, inner, place and face.")
       .def("__repr__",
            [](const Hulls& self) { return std::string("<snug.Hulls ") + name_of(self.outcome) + ">"; });
@@ -469,6 +510,7 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
   add_enclosures(module);
   add_tessellation(module);
   add_hulls(module);
+  add_envelope(module);
   add_measures(module);
   add_deviation(module);
   using py::arg;
@@ -517,6 +559,13 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
            arg("progress") = none,
            "Two meshes that sandwich the surface, at most `error` from it (1 % of the size): inner, outer = "
            "surface.hull(\"0.5%\").\n"
+           "What is guaranteed holds if .outcome is 'complete'. Raises ValueError, MeshError, OverflowError.")
+      .def("envelope", &envelope_of, arg("error") = none, py::kw_only(), arg("clearance") = none,
+           arg("max_splits") = none, arg("single_precision") = false, arg("threads") = 0,
+           arg("progress") = none,
+           "A closed mesh around the surface, whatever it is: at most `error` (1 % of the size) and at least "
+           "`clearance` (a "
+           "quarter of that) from it.\n"
            "What is guaranteed holds if .outcome is 'complete'. Raises ValueError, MeshError, OverflowError.")
       .def("measure", &measured, py::kw_only(), arg("relative") = none, arg("max_splits") = none,
            arg("threads") = 0, arg("progress") = none,

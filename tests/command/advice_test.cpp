@@ -145,7 +145,7 @@ TEST_F(advice, of_a_scheme_that_fits_one_of_two_meshes_is_one_for_each) {
   EXPECT_EQ(run_snug(with(words, {"--scheme-b", "bilinear"})).status, 0);
 }
 
-TEST_F(advice, of_an_envelope_says_that_a_saddle_corner_has_none) {
+TEST_F(advice, of_a_hull_says_that_a_saddle_corner_has_none_and_the_envelope_is_made) {
   // Six unit cubes around one corner, two opposite ones of the eight left out.
   std::string text;
   for (int k = 0; k < 3; ++k) {
@@ -182,12 +182,13 @@ TEST_F(advice, of_an_envelope_says_that_a_saddle_corner_has_none) {
       }
     }
   }
-  const Outcome outcome = run_snug({"envelope", write("saddle.obj", text), "--scheme", "flat", "--error",
-                                    "0.05", "-o", folder_.file("e.obj")});
+  const std::string saddle = write("saddle.obj", text), out = folder_.file("e.obj");
+  const Outcome outcome = run_snug({"hull", saddle, "--scheme", "flat", "--error", "0.05", "--outer", out});
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_NE((outcome.out + outcome.err).find("not at a spike, a fold or a saddle-shaped corner"),
             std::string::npos)
       << outcome.out << outcome.err;
+  EXPECT_EQ(run_snug({"envelope", saddle, "--scheme", "flat", "--error", "0.05", "-o", out}).status, 0);
 }
 
 }  // namespace

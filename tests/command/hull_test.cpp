@@ -171,13 +171,38 @@ TEST(hull, does_not_depend_on_threads) {
   EXPECT_EQ(read_file(one, {}), read_file(three, {}));
 }
 
-TEST(envelope, is_closed_and_around_the_solid) {
+TEST(envelope, is_closed_and_around_the_surface) {
+  const TemporaryFolder folder, sources;
+  // A solid, a sheet, and a solid in floats.
+  const std::string sheet = write(sources, "sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\n");
+  for (const auto& [mesh, file] : {std::pair{model("pawn.obj"), folder.file("a.ply")},
+                                   {sheet, folder.file("b.ply")},
+                                   {model("bracket.obj"), folder.file("c.stl")}}) {
+    const json found = answer({"envelope", mesh, "--error", "2%", "--clearance", "0.5%", "-o", file});
+    EXPECT_EQ(found["outcome"], "complete");
+    EXPECT_EQ(found["envelope"]["gap"], found["error"]);
+    EXPECT_LE(found["volume"][0], found["volume"][1]);
+    EXPECT_EQ(read_closed(file).face_count(), found["envelope"]["triangles"]);
+    const json apart = answer({"distance", file, mesh, "--scheme-a", "flat", "--relative", "1e-3"});
+    EXPECT_GE(apart["distance"][1], found["clearance"]);
+    EXPECT_GE(static_cast<double>(apart["distance"][0]) * 1.01, found["clearance"]) << mesh;
+    const json far = answer({"deviation", mesh, file, "--absolute", "0.1%"});
+    EXPECT_LE(far["from_candidate"][0], found["error"]);
+    EXPECT_LE(static_cast<double>(far["from_candidate"][1]) * 0.9, found["error"]) << mesh;
+    EXPECT_EQ(answer({"self-contact", file, "--scheme", "flat"})["verdict"], "clear") << mesh;
+  }
+}
+
+// Finer than its cubes go the outer hull is made, of solids alone.
+TEST(envelope, is_a_hull_where_the_error_is_small) {
   const TemporaryFolder folder;
-  const std::string pawn = model("pawn.obj"), file = folder.file("around.stl");
-  const json found = answer({"envelope", pawn, "--error", "1%", "-o", file});
-  EXPECT_EQ(found["outcome"], "complete");
-  EXPECT_LE(found["envelope"]["gap"], found["error"]);
-  EXPECT_EQ(read_closed(file).face_count(), found["envelope"]["triangles"]);
+  const std::string pawn = model("pawn.obj"), file = folder.file("around.ply");
+  EXPECT_EQ(run_snug({"envelope", pawn, "--error", "1%", "--max-splits", "1000", "-o", file}).status, 5);
+  EXPECT_TRUE(folder.empty());
+  const json fine = answer({"envelope", pawn, "--error", "0.05%", "-o", file});
+  EXPECT_EQ(fine["outcome"], "complete");
+  EXPECT_EQ(fine["clearance"], 0);
+  EXPECT_LE(fine["envelope"]["gap"], fine["error"]);
   EXPECT_EQ(answer({"collide", file, pawn, "--scheme-a", "flat", "--tolerance", "0", "--solid"})["contained"],
             "b");
 }
@@ -210,10 +235,11 @@ TEST(envelope, tells_whether_a_part_is_inside) {
 }
 
 TEST(envelope, says_what_is_wrong) {
-  const TemporaryFolder folder, sources;
-  const std::string file = folder.file("a.stl"),
-                    sheet = write(sources, "sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  expect_refused({"envelope", sheet, "--error", "1%", "-o", file}, 4, "edge");
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.stl");
+  expect_refused({"envelope", model("pawn.obj"), "--error", "1%", "--clearance", "1%", "-o", file}, 4,
+                 "less than the error");
+  expect_refused({"envelope", model("pawn.obj"), "--error", "60%", "-o", file}, 4, "half");
   expect_refused({"envelope", model("pawn.obj"), "--error", "1%"}, 2, "--part");
   expect_refused({"envelope", model("pawn.obj"), "-o", file}, 2, "--error");
   expect_refused({"envelope", model("pawn.obj"), "--error", "1%", "-o", "-"}, 2, "standard output");

@@ -166,7 +166,7 @@ def every_answer(cube):
     one, many = [0.25, 0.5, 3.0], [[0.25, 0.5, 3.0], [0, 0, 0.1]]
     hulls = cube.hull("5%")
     answers = [
-        cube.bound(level=1), cube.bound(error="5%"), cube.tessellate("5%", corners=True), hulls, hulls.inner, cube.hull("5%", inner=False),
+        cube.bound(level=1), cube.bound(error="5%"), cube.tessellate("5%", corners=True), hulls, hulls.inner, cube.hull("5%", inner=False), cube.envelope("5%"),
         cube.measure(), snug.Surface(CUBE, CUBE_FACES[1:]).measure(), snug.deviation(cube, cube.tessellate("5%"), solid=True),
         snug.deviation(cube, cube).from_surface, cube.evaluate(0, 0.5, 0.5), cube.evaluate([0, 1], 0.25, 0.5),
     ]
@@ -268,6 +268,11 @@ def test_shapes(cube):
     deviation = snug.deviation(cube, mesh)
     assert deviation.from_surface.lower <= mesh.error_bound and deviation.inside is None
     assert snug.deviation(cube, cube).from_candidate.lower == 0
+    around = cube.envelope("2%", clearance="1%")
+    assert around.outcome == "complete" and around.problems == [] and around.clearance * 2 == around.error
+    assert np.all(cube.closest_point(around.vertices).upper >= around.clearance)
+    low, high = around.volume
+    assert cube.measure().volume[1] < low <= high
     inner, outer = hulls = cube.hull("2%")
     assert hulls.outcome == "complete" and hulls.closed and hulls.problems == []
     assert cube.signed_distance(inner.vertices).upper.max() < 0 < cube.signed_distance(outer.vertices).lower.min()

@@ -1,0 +1,418 @@
+#include <snug/hull.h>
+#include <snug/search/surface_data.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <snug/distance.h>
+#include <snug/geometry/rounding.h>
+#include <snug/measure.h>
+#include <snug/search/feet.h>
+#include <snug/search/offset_mesh.h>
+#include <snug/search/piece.h>
+#include <snug/search/placed_box.h>
+#include <snug/search/precision.h>
+#include <snug/search/self_contact.h>
+#include <support/direction.h>
+#include <support/error.h>
+#include <support/parallel.h>
+#include <support/run.h>
+#include <support/scaling.h>
+
+namespace snug {
+namespace {
+
+using Index = std::uint32_t;
+
+// Of the band, from below: where vertices are put. Nearer to the surfaces than the middle, since facets across the mouths of gaps
+// are farther from them than their corners.
+constexpr double level_share = 0.4;
+// Sides of cubes: of the level, below 2 / sqrt(3), so that each point of a surface has a corner of its cube within the level; and of the
+// band's width, if that is less. Then shares of these, where the first do not do.
+constexpr double cell_of_level = 1.1, cell_of_width = 0.8;
+constexpr std::array cell_shares{1.0, 0.64, 0.4};
+// Of the band's width: errors of pieces; how far collapses move planes, at first and once facets are looked at one by one; how
+// far off the level vertices may be, and how far below it.
+constexpr double piece_error_share = 0x1p-6, first_move_share = 0.04, last_move_share = 0.5,
+                 vertex_share = 0.3, near_share = 0.1;
+// The least cosine between a facet's normal and the way from the surface to its centre.
+constexpr double least_facing = 0.3;
+constexpr int first_rounds = 8, max_rounds = 24, max_reductions = 5, max_steps = 8;
+constexpr std::size_t facets_beside = 20'000, max_boxes = 2'000;
+constexpr std::uint64_t least_pieces = 1u << 17;
+constexpr std::size_t max_contacts = 100'000, max_problems = 100;
+// Of a facet, to show that it is near. Rounding of a middle is within distance_rounding, as often as that.
+struct Effort {
+  int halvings;
+  bool if_open;  // the answer where these do not decide
+};
+constexpr Effort look{3, true}, proof{16, false};
+// A pose sums four terms, each at most twice the largest coordinate or offset, in each of three coordinates.
+constexpr double pose_roundings = 64 * unit_roundoff;
+
+// All parts as one set, in units in which coordinates are below 1.
+struct PlacedPieces {
+  PieceSet set;
+  PowerOfTwo scale;             // from mesh units
+  std::vector<Point3> members;  // for each patch, a point within the error of its pieces
+};
+
+// A box around all parts, in mesh units.
+Box3 box_around(std::span<const PlacedSurface> parts) {
+  Box3 all;
+  for (const PlacedSurface& part : parts) all.add(placed_box(part.surface().data()->bvh(), part.pose()));
+  require_representable(all.lower);
+  require_representable(all.upper);
+  return all;
+}
+
+// Nothing if these would be more than `most`.
+std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, PowerOfTwo scale,
+                                          double error, std::uint64_t most, const Run& run) {
+  std::vector<QuadraticTriangle> all;
+  PlacedPieces result{.set = {}, .scale = scale, .members = {}};
+  for (const PlacedSurface& part : parts) {
+    const LimitSurface& surface = part.surface().data()->bvh().surface();
+    const PieceSet own(surface, error, run.threads, stop_only(run), most, scale * surface.scale().inverse());
+    if (own.size() == 0 || all.size() + own.size() > most) return std::nullopt;
+    const Motion& pose = part.pose();
+    const Vector3 offset = scale.apply(pose.offset());
+    const auto placed = [&](const Point3& p) {
+      const Vector3 v = p - Point3{};
+      return Point3{dot(pose.row(0), v), dot(pose.row(1), v), dot(pose.row(2), v)} + offset;
+    };
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      QuadraticTriangle piece = own[i];
+      double largest = max_abs(offset);
+      for (const Point3& p : piece.corners) largest = std::max(largest, max_abs(p - Point3{}));
+      for (const Point3& p : piece.middles) largest = std::max(largest, max_abs(p - Point3{}));
+      for (Point3& p : piece.corners) p = placed(p);
+      for (Point3& p : piece.middles) p = placed(p);
+      // Whatever the direction: the normal that goes with the error is the unturned piece's.
+      piece.normal = {};
+      piece.normal_error = 0;
+      piece.error = enlarged((1 + 4 * pose.defect()) * piece.error + pose_roundings * largest);
+      if (!std::isfinite(piece.error)) {
+        throw InputError(InputProblem::unrepresentable,
+                         "envelope: a patch of the surface does not fit doubles; scale the mesh");
+      }
+      if (i == 0 || own.name(i).patch != own.name(i - 1).patch) result.members.push_back(piece.corners[0]);
+      all.push_back(piece);
+    }
+  }
+  result.set = PieceSet(std::move(all));
+  result.set.prepare(run.threads);
+  return result;
+}
+
+bool contains(const Box3& box, const Point3& p) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(box.lower[a] <= p[a] && p[a] <= box.upper[a])) return false;
+  }
+  return true;
+}
+
+class EnvelopeMaker {
+ public:
+  EnvelopeMaker(const PlacedPieces& pieces, Interval band, const EnvelopeOptions& options, const Run& run)
+      : pieces_(pieces), options_(options), run_(run), monitor_(stop_only(run)), band_(band) {}
+
+  Envelope run() {
+    for (const double share : cell_shares) {
+      const OffsetMeshOptions options{
+          .offset = level(),
+          .cell = share * std::min(cell_of_level * level(), cell_of_width * (band_.upper - band_.lower)),
+          .most_cells = run_.max_splits.value_or(default_splits::envelope),
+          .threads = run_.threads};
+      std::optional<ClosedMesh> made = offset_mesh(pieces_.set, options, monitor_);
+      if (!made) return without(HullFault::too_few_triangles, pieces_.members[0]);
+      monitor_of(run_).report(0.4);
+      mesh_ = std::move(*made);
+      if (!reduce(first_move_share, {})) continue;
+      monitor_of(run_).report(0.6);
+      // Looked at here and there, judged at the end.
+      ClosedMesh fine = mesh_;
+      if (!reduce(last_move_share, [&](const Triangle& t) { return faces_away(t) && is_in_band(t, look); })) {
+        mesh_ = std::move(fine);
+      }
+      monitor_of(run_).report(0.9);
+      return finished();
+    }
+    const auto wrong = std::find(wrong_.begin(), wrong_.end(), to_halve);
+    const std::size_t t = wrong == wrong_.end() ? 0 : static_cast<std::size_t>(wrong - wrong_.begin());
+    return without(HullFault::meets_itself, mesh_.points[mesh_.triangles[t][0]]);
+  }
+
+ private:
+  enum State : std::uint8_t { proved, to_halve };
+
+  [[nodiscard]] double level() const { return band_.lower + level_share * (band_.upper - band_.lower); }
+  [[nodiscard]] Triangle corners(Index t) const {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    return {mesh_.points[a], mesh_.points[b], mesh_.points[c]};
+  }
+  [[nodiscard]] Point3 in_mesh_units(const Point3& p) const { return pieces_.scale.inverse().apply(p); }
+
+  // Vertices nearer than `least` go to the level. Those that are far stay: they are where gaps are bridged.
+  void push_off(double least) {
+    parallel_for(mesh_.points.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        Point3& p = mesh_.points[v];
+        const QuadraticFoot foot = least > 0 ? nearest_foot(pieces_.set, p) : QuadraticFoot{};
+        if (foot.distance < least && foot.distance > 0) {
+          p = foot.point + (level() / foot.distance) * (p - foot.point);
+        }
+        p = as_written(p);
+      }
+    });
+  }
+  // With the coordinates that are handed out.
+  [[nodiscard]] Point3 as_written(const Point3& p) const {
+    Point3 out = in_mesh_units(p);
+    for (std::size_t a = 0; a < 3 && options_.single_precision; ++a) {
+      out[a] = static_cast<double>(static_cast<float>(out[a]));
+      if (!std::isfinite(out[a])) {
+        throw InputError(InputProblem::unrepresentable,
+                         "envelope: a coordinate does not fit a float; scale the mesh down, or write a "
+                         "format that holds doubles");
+      }
+    }
+    return pieces_.scale.apply(require_representable(out));
+  }
+
+  // Moves vertices along the normals there, inward or outward, until they are well within the band: through a gap, where the way to
+  // the nearest surface leads aside.
+  void steer(std::span<const Index> vertices) {
+    std::vector<Vector3> normals(mesh_.points.size());
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+      const Vector3 normal = unit_normal(corners(t));
+      for (const Index v : mesh_.triangles[t]) normals[v] = normals[v] + normal;
+    }
+    const double most = vertex_share * (band_.upper - band_.lower);
+    parallel_for(vertices.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Point3& p = mesh_.points[vertices[i]];
+        p = as_written(p);
+        const Vector3 outward = normalized(normals[vertices[i]]);
+        Point3 at = p;
+        QuadraticFoot foot;
+        for (int step = 0; step < max_steps && distance(at, p) <= level(); ++step) {
+          foot = nearest_foot(pieces_.set, at, foot);
+          const double off = foot.distance - level();
+          if (std::fabs(off) <= most) {
+            p = as_written(at);
+            break;
+          }
+          at = at + (off > 0 ? most / 2 - off : -most / 2 - off) * outward;
+        }
+      }
+    });
+  }
+  // Fewer triangles, all of them proved. Where that fails all that is near stays as it is. False if it fails even so.
+  bool reduce(double share, const std::function<bool(const Triangle&)>& accept) {
+    const ClosedMesh whole = mesh_;
+    std::vector<std::uint8_t> kept;
+    for (int round = 0; round < max_reductions; ++round) {
+      mesh_ = whole;
+      const bool last = round + 1 == max_reductions;
+      if (last) kept.assign(whole.points.size(), 1);
+      simplify(mesh_, share * (band_.upper - band_.lower), accept, kept, monitor_);
+      push_off(accept ? 0 : level() - near_share * (band_.upper - band_.lower));
+      wrong_.assign(mesh_.triangles.size(), to_halve);
+      if (repair(last ? max_rounds : first_rounds)) return true;
+      if (!last) keep_near_wrong(std::ldexp(level(), round), whole, kept);
+    }
+    return false;
+  }
+  // Marks the vertices of a mesh that are as near to facets which are not proved.
+  void keep_near_wrong(double beyond, const ClosedMesh& whole, std::vector<std::uint8_t>& kept) const {
+    std::vector<Box3> boxes;
+    for (Index t = 0; t < wrong_.size(); ++t) {
+      if (wrong_[t] == proved) continue;
+      Box3& box = boxes.emplace_back();
+      for (const Point3& p : corners(t)) box.add(p);
+      box.lower = box.lower - Vector3{beyond, beyond, beyond};
+      box.upper = box.upper + Vector3{beyond, beyond, beyond};
+    }
+    kept.resize(whole.points.size());
+    if (boxes.size() > max_boxes) kept.assign(kept.size(), 1);
+    parallel_for(kept.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (v % 256 == 0) monitor_.checkpoint();
+        for (std::size_t i = 0; i < boxes.size() && kept[v] == 0; ++i)
+          kept[v] = contains(boxes[i], whole.points[v]);
+      }
+    });
+  }
+
+  // Judges what is not proved.
+  void judge() {
+    parallel_for(wrong_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        if (wrong_[t] == proved) continue;
+        monitor_.checkpoint();
+        wrong_[t] = is_in_band(corners(static_cast<Index>(t)), proof) ? proved : to_halve;
+      }
+    });
+  }
+  // Halves facets until all are in the band, and none touches another.
+  bool repair(int rounds) {
+    const std::size_t most = 2 * mesh_.triangles.size() + facets_beside;
+    for (int round = 0;; ++round) {
+      judge();
+      if (std::all_of(wrong_.begin(), wrong_.end(), [](std::uint8_t s) { return s == proved; })) {
+        const auto pairs = self_contacts(mesh_.points, mesh_.triangles, max_contacts, run_.threads, monitor_);
+        if (pairs.empty()) return true;
+        for (const TrianglePair& pair : pairs) wrong_[pair.a] = wrong_[pair.b] = to_halve;
+        if (rounds == first_rounds) return false;
+      }
+      if (round == rounds || mesh_.triangles.size() > most) return false;
+      steer(halve_longest_sides(mesh_, wrong_));
+    }
+  }
+
+  // With `proof`: all points of the facet are at least band.lower and at most band.upper from the surfaces.
+  [[nodiscard]] bool is_in_band(const Triangle& corners, Effort effort) const {
+    QuadraticTriangle facet = flat_quadratic(corners);
+    facet.error = band_.lower;
+    if (may_meet(pieces_.set, facet, (band_.upper - band_.lower) / 32)) return false;
+    QuadraticFoot foot;
+    return is_near(corners, foot, effort);
+  }
+  // All points of a triangle are no farther from a point of the surfaces than its corners. Halves it where that is too far.
+  [[nodiscard]] bool is_near(const Triangle& t, QuadraticFoot& foot, Effort effort) const {
+    const Point3 centre = t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0]));
+    foot = nearest_foot(pieces_.set, centre, foot);
+    if (foot.distance > band_.upper) return false;
+    double far = 0;
+    for (const Point3& p : t) far = std::max(far, distance(p, foot.point));
+    if (enlarged(far + pieces_.set[foot.piece].error) + distance_rounding <= band_.upper) return true;
+    if (effort.halvings == 0) return effort.if_open;
+    std::size_t k = 0;
+    const auto length = [&](std::size_t i) { return distance(t[i], t[(i + 1) % 3]); };
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (length(i) > length(k)) k = i;
+    }
+    const Point3 middle = t[k] + 0.5 * (t[(k + 1) % 3] - t[k]);
+    for (const std::size_t moved : {k, (k + 1) % 3}) {
+      Triangle half = t;
+      half[moved] = middle;
+      if (!is_near(half, foot, {effort.halvings - 1, effort.if_open})) return false;
+    }
+    return true;
+  }
+  // Meshes whose facets all do hardly touch themselves; no proof rests on it.
+  [[nodiscard]] bool faces_away(const Triangle& t) const {
+    const Point3 centre = t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0]));
+    const QuadraticFoot foot = nearest_foot(pieces_.set, centre);
+    return foot.distance > band_.lower && foot.distance < band_.upper &&
+           dot(unit_normal(t), centre - foot.point) > least_facing * foot.distance;
+  }
+
+  Envelope written() {
+    Envelope result;
+    result.error = *options_.error;
+    result.clearance = *options_.clearance;
+    for (const Point3& p : mesh_.points) result.positions.push_back(require_representable(in_mesh_units(p)));
+    result.triangles = std::move(mesh_.triangles);
+    return result;
+  }
+  Envelope without(HullFault fault, const Point3& place) {
+    mesh_ = {};
+    Envelope result = written();
+    result.outcome = outcome_of(false, fault == HullFault::too_few_triangles);
+    result.problems.push_back({fault, false, in_mesh_units(place)});
+    return result;
+  }
+  // Is each patch inside? None meets the mesh, so a point of each tells.
+  Envelope finished() {
+    if (mesh_.triangles.empty() || !is_manifold(mesh_))
+      return without(HullFault::meets_itself, pieces_.members[0]);
+    Envelope result = written();
+    ControlMesh mesh;
+    mesh.points = result.positions;
+    for (const auto& [a, b, c] : result.triangles)
+      mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+    const Run quiet{.threads = run_.threads, .monitor = &monitor_};
+    const Surface facets(std::move(mesh), {.scheme = Scheme::flat}, quiet);
+    std::vector<Point3> members;
+    members.reserve(pieces_.members.size());
+    for (const Point3& p : pieces_.members) members.push_back(in_mesh_units(p));
+    const std::vector<std::optional<bool>> inside = snug::contains(facets, members, quiet);
+    for (std::size_t i = 0; i < inside.size() && result.problems.size() < max_problems; ++i) {
+      if (inside[i] != true) result.problems.push_back({HullFault::not_around, false, members[i]});
+    }
+    if (const Measures measures = measure(facets, {}, quiet); measures.volume)
+      result.volume = *measures.volume;
+    result.outcome = outcome_of(result.problems.empty(), false);
+    monitor_of(run_).report(1);
+    return result;
+  }
+
+  const PlacedPieces& pieces_;
+  const EnvelopeOptions& options_;
+  const Run& run_;
+  WorkMonitor monitor_;
+  Interval band_;  // of distances, in the units of the pieces
+  ClosedMesh mesh_;
+  std::vector<std::uint8_t> wrong_;  // a State for each triangle
+};
+
+}  // namespace
+
+Envelope envelope(std::span<const PlacedSurface> parts, const EnvelopeOptions& wanted, const Run& run) {
+  require_value(!parts.empty(), "envelope: give at least one surface");
+  const Box3 box = box_around(parts);
+  const double size = longest_side(box);
+  EnvelopeOptions options = wanted;
+  if (!options.error) options.error = 1e-2 * size;
+  require_value(*options.error > 0 && std::isfinite(*options.error),
+                "envelope: the error must be finite and greater than 0");
+  if (!options.clearance) options.clearance = *options.error / 4;
+  require_length(*options.clearance, "envelope: the clearance");
+  require_value(*options.clearance < *options.error, "envelope: the clearance must be less than the error");
+  if (*options.error > size / 2) {
+    throw InputError(
+        InputProblem::value,
+        "envelope: the error is more than half of the surfaces' size; give at most " + shortest(size / 2));
+  }
+  double largest = 0;
+  for (const Point3& p : {box.lower, box.upper}) largest = std::max(largest, max_abs(p - Point3{}));
+  // Below 1, with room for the envelope.
+  const PowerOfTwo scale = PowerOfTwo::normalising(largest) * PowerOfTwo(-1);
+  const double width = *options.error - *options.clearance;
+  const double least = scale.inverse().apply(options.single_precision ? 0x1p-18 : 0x1p-28);
+  if (width < least) {
+    throw InputError(InputProblem::value,
+                     std::string("envelope: ") + (options.single_precision ? "floats" : "doubles") +
+                         " allow no difference of error and clearance below " + shortest(least) +
+                         " for coordinates of this size; ask for that or more" +
+                         (options.single_precision ? ", or write a format that holds doubles" : ""));
+  }
+  const double error = piece_error_share * scale.apply(width);
+  const std::uint64_t cubes = run.max_splits.value_or(default_splits::envelope);
+  const std::optional<PlacedPieces> pieces =
+      placed_pieces(parts, scale, error, std::max(least_pieces, cubes / 4), run);
+  if (!pieces) {
+    Envelope none;
+    none.error = *options.error;
+    none.clearance = *options.clearance;
+    none.outcome = Outcome::budget_spent;
+    none.problems.push_back({HullFault::too_few_triangles, false, box.lower});
+    return none;
+  }
+  // The errors of pieces are below the least distance: then their points are on the side of the surfaces' own.
+  const Interval band{std::max(enlarged(scale.apply(*options.clearance)) + 4 * distance_rounding, 4 * error),
+                      scale.apply(*options.error) * (1 - 4 * unit_roundoff)};
+  return EnvelopeMaker(*pieces, band, options, run).run();
+}
+
+Envelope envelope(const PlacedSurface& part, const EnvelopeOptions& options, const Run& run) {
+  return envelope(std::span(&part, 1), options, run);
+}
+
+}  // namespace snug
