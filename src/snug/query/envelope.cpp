@@ -42,7 +42,7 @@ constexpr double piece_error_share = 0x1p-6, first_move_share = 0.04, last_move_
 // The least cosine between a facet's normal and the way from the surface to its centre.
 constexpr double least_facing = 0.3;
 constexpr int first_rounds = 8, max_rounds = 24, max_reductions = 5, max_steps = 8;
-constexpr std::size_t facets_beside = 20'000, max_boxes = 2'000;
+constexpr std::size_t facets_beside = 20'000, max_boxes = 20'000;
 constexpr std::uint64_t least_pieces = 1u << 17;
 constexpr std::size_t max_contacts = 100'000, max_problems = 100;
 // Of a facet, to show that it is near. Rounding of a middle is within distance_rounding, as often as that.
@@ -310,7 +310,10 @@ class EnvelopeMaker {
     const Point3 centre = t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0]));
     const QuadraticFoot foot = nearest_foot(pieces_.set, centre);
     return foot.distance > band_.lower && foot.distance < band_.upper &&
-           dot(unit_normal(t), centre - foot.point) > least_facing * foot.distance;
+           dot(unit_normal(t), centre - foot.point) > least_facing * foot.distance &&
+           std::all_of(t.begin(), t.end(), [&](const Point3& p) {
+             return nearest_foot(pieces_.set, p, foot).distance < band_.upper;
+           });
   }
 
   Envelope written() {
