@@ -199,7 +199,7 @@ TEST(envelope, is_a_hull_where_the_error_is_small) {
   const std::string pawn = model("pawn.obj"), file = folder.file("around.ply");
   EXPECT_EQ(run_snug({"envelope", pawn, "--error", "1%", "--max-splits", "1000", "-o", file}).status, 5);
   EXPECT_TRUE(folder.empty());
-  const json fine = answer({"envelope", pawn, "--error", "0.05%", "-o", file});
+  const json fine = answer({"envelope", pawn, "--error", "0.3%", "--max-splits", "50000", "-o", file});
   EXPECT_EQ(fine["outcome"], "complete");
   EXPECT_EQ(fine["clearance"], 0);
   EXPECT_LE(fine["envelope"]["gap"], fine["error"]);
