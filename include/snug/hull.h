@@ -88,7 +88,7 @@ struct Envelope {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double error = 0, clearance = 0;      ///< those that were asked for
-  Interval volume;                      ///< contains that of the solid that it bounds
+  Interval volume;                      ///< contains it, as Measures::volume does
   Outcome outcome = Outcome::complete;  ///< do all guarantees of envelope() hold? Else they may not
   std::vector<HullProblem> problems;    ///< unless `complete`, some of the failures
 };

@@ -63,6 +63,26 @@ TEST(closed_mesh, around_any_set_is_a_manifold_about_the_offset) {
   EXPECT_FALSE(offset_mesh(set, {.offset = 0.01, .cell = 0.01, .most_cells = 1000}, {}).has_value());
 }
 
+// Feet on triangles without area may be far from the nearest: distances that are too large leave cubes out, and are no reason for a
+// mesh with holes.
+TEST(closed_mesh, around_needles_is_a_manifold_whatever_their_feet_are) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(-0.8, 0.8);
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<QuadraticTriangle> pieces;
+    for (int i = 0; i < 6; ++i) {
+      const Point3 p{unit(random), unit(random), unit(random)}, q{unit(random), unit(random), unit(random)};
+      // On a line, or off it by as little as rounding; the third corner between, beyond or at one of the others.
+      const double share = std::array{0.5, 1.7, 0.0, 1.0, unit(random)}[random() % 5];
+      const double off = std::array{0.0, 1e-17, 1e-16, 1e-12}[random() % 4];
+      pieces.push_back(flat_quadratic({p, q, p + share * (q - p) + Vector3{off, -off, 2 * off}}));
+    }
+    PieceSet set(std::move(pieces));
+    set.prepare(1);
+    EXPECT_TRUE(is_manifold(around(set, trial % 2 == 0 ? 0.1 : 0.04))) << trial;
+  }
+}
+
 // The wall of a cavity, and what is in it.
 TEST(closed_mesh, has_only_the_outermost_shells) {
   std::vector<QuadraticTriangle> pieces;

@@ -292,11 +292,7 @@ class EnvelopeMaker {
     for (const Point3& p : t) far = std::max(far, distance(p, foot.point));
     if (enlarged(far + pieces_.set[foot.piece].error) + distance_rounding <= band_.upper) return true;
     if (effort.halvings == 0) return effort.if_open;
-    std::size_t k = 0;
-    const auto length = [&](std::size_t i) { return distance(t[i], t[(i + 1) % 3]); };
-    for (std::size_t i = 1; i < 3; ++i) {
-      if (length(i) > length(k)) k = i;
-    }
+    const std::size_t k = longest_side(t);
     const Point3 middle = t[k] + 0.5 * (t[(k + 1) % 3] - t[k]);
     for (const std::size_t moved : {k, (k + 1) % 3}) {
       Triangle half = t;

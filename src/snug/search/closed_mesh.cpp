@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include <snug/search/piece.h>
 #include <support/point.h>
 
 namespace snug {
@@ -101,7 +102,8 @@ class Simplifier {
       sum += quadrics_[best.b];
       if (const Vector3 to = place(best.a, best.b, sum); can_collapse(best, to)) collapse(best, to);
     }
-    drop_unused();
+    std::erase_if(mesh_.triangles, [](const Names& t) { return t[0] == no_vertex; });
+    drop_unused_points(mesh_);
   }
 
  private:
@@ -192,23 +194,6 @@ class Simplifier {
     visit_neighbours(a, [&](Index v) { this->offer(std::min(a, v), std::max(a, v)); });
   }
 
-  void drop_unused() {
-    ClosedMesh left;
-    std::vector<Index> name(mesh_.points.size(), no_vertex);
-    for (const Names& t : mesh_.triangles) {
-      if (t[0] == no_vertex) continue;
-      Names& made = left.triangles.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (name[t[k]] == no_vertex) {
-          name[t[k]] = static_cast<Index>(left.points.size());
-          left.points.push_back(mesh_.points[t[k]]);
-        }
-        made[k] = name[t[k]];
-      }
-    }
-    mesh_ = std::move(left);
-  }
-
   ClosedMesh& mesh_;
   const std::function<bool(const Triangle&)>& accept_;
   std::span<const std::uint8_t> kept_;
@@ -222,6 +207,21 @@ class Simplifier {
 };
 
 }  // namespace
+
+void drop_unused_points(ClosedMesh& mesh) {
+  std::vector<Index> name(mesh.points.size(), no_vertex);
+  std::vector<Point3> used;
+  for (Names& t : mesh.triangles) {
+    for (Index& v : t) {
+      if (name[v] == no_vertex) {
+        name[v] = static_cast<Index>(used.size());
+        used.push_back(mesh.points[v]);
+      }
+      v = name[v];
+    }
+  }
+  mesh.points = std::move(used);
+}
 
 bool is_manifold(const ClosedMesh& mesh) {
   std::unordered_map<std::uint64_t, Index> next;  // of an edge: the vertex after it in its triangle
@@ -261,21 +261,13 @@ std::vector<Index> halve_longest_sides(ClosedMesh& mesh, std::vector<std::uint8_
     for (std::size_t k = 0; k < 3; ++k)
       of_side[side(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])] = t;
   }
-  const auto longest = [&](Index t) {
-    const Names& names = mesh.triangles[t];
-    std::array<double, 3> lengths;
-    for (std::size_t k = 0; k < 3; ++k)
-      lengths[k] = distance(mesh.points[names[k]], mesh.points[names[(k + 1) % 3]]);
-    const auto k =
-        static_cast<std::size_t>(std::max_element(lengths.begin(), lengths.end()) - lengths.begin());
-    return std::pair(lengths[k], k);
-  };
   // The longest of all first: no triangle waits for ever while others beside it are cut.
   std::vector<std::tuple<double, Index, std::size_t>> order;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     if (marks[t] != 1) continue;
-    const auto [length, k] = longest(t);
-    order.emplace_back(-length, t, k);
+    const Names& names = mesh.triangles[t];
+    const std::size_t k = longest_side({mesh.points[names[0]], mesh.points[names[1]], mesh.points[names[2]]});
+    order.emplace_back(-distance(mesh.points[names[k]], mesh.points[names[(k + 1) % 3]]), t, k);
   }
   std::sort(order.begin(), order.end());
   std::vector<std::uint8_t> is_cut(mesh.triangles.size());

@@ -17,6 +17,9 @@ struct ClosedMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// Leaves out points that no triangle names; the others are in the order in which triangles name them.
+void drop_unused_points(ClosedMesh& mesh);
+
 /// Does each edge belong to two triangles, which run along it opposite ways, and are the triangles around each vertex one fan?
 [[nodiscard]] bool is_manifold(const ClosedMesh& mesh);
 

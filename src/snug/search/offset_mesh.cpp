@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
-#include <span>
-#include <unordered_map>
 #include <utility>
 
 #include <snug/search/feet.h>
@@ -14,7 +13,7 @@ namespace snug {
 namespace {
 
 using Index = std::uint32_t;
-using Code = std::uint64_t;  // three whole numbers of 21 code_bits
+using Code = std::uint64_t;  // three whole numbers of 21 bits
 
 constexpr Index no_index = UINT32_MAX;
 constexpr unsigned code_bits = 21;
@@ -35,7 +34,7 @@ Code corner(Code cube, unsigned i) {
 // Numbers of codes, in the order in which they came.
 class Numbers {
  public:
-  // The number of a code, a new one if it has no_index.
+  // The number of a code, a new one if it has none.
   Index add(Code code) {
     if (2 * (codes_.size() + 1) > slots_.size()) grow();
     Index& slot = slots_[find(code)];
@@ -45,7 +44,7 @@ class Numbers {
     }
     return slot;
   }
-  // `no_index` if it has no_index.
+  // no_index if it has none.
   [[nodiscard]] Index of(Code code) const { return slots_.empty() ? no_index : slots_[find(code)]; }
   [[nodiscard]] const std::vector<Code>& codes() const { return codes_; }
   [[nodiscard]] std::size_t size() const { return codes_.size(); }
@@ -120,7 +119,7 @@ struct Sheets {
     }
   }
   std::uint8_t count = 0;
-  std::array<std::uint8_t, 12> of_edge{};  // 12 if it has no_index
+  std::array<std::uint8_t, 12> of_edge{};  // 12 if it belongs to none
 };
 // By the corners inside, a bit each.
 constexpr auto all_sheets = [] {
@@ -153,9 +152,12 @@ class OffsetSampler {
     if (levels_ >= code_bits || !find_cubes()) return false;
     add_corners();
     add_values();
-    if (!close()) return false;
-    part_sheets();
-    return close();
+    // Corners that change make new cubes, whose faces may be crossed four times, and these may change corners.
+    while (closed_ < cubes_.size()) {
+      if (!close()) return false;
+      part_sheets();
+    }
+    return true;
   }
 
   ClosedMesh mesh() {
@@ -247,8 +249,8 @@ class OffsetSampler {
     for (const float d : added) values_.push_back(d - static_cast<float>(options_.offset));
   }
 
-  // Adds the four cubes around each edge that is crossed, where distances that were found are not the least and one was left out.
-  // False if they become too many.
+  // Adds the four cubes around each edge that is crossed: distances that were found may be larger than the least, so that one was
+  // left out. False if they become too many.
   bool close() {
     while (closed_ < cubes_.size()) {
       monitor_.checkpoint();
@@ -261,8 +263,8 @@ class OffsetSampler {
           const std::size_t u = (e / 4 + 1) % 3, v = (e / 4 + 2) % 3;
           for (unsigned k = 0; k < 4; ++k) {
             std::array<Code, 3> at = first;
-            at[u] += (a >> u & 1u) - (k & 1u);
-            at[v] += (a >> v & 1u) - (k >> 1);
+            at[u] = at[u] + (a >> u & 1u) - (k & 1u);
+            at[v] = at[v] + (a >> v & 1u) - (k >> 1);
             cubes_.add(code_of(at[0], at[1], at[2]));
           }
         }
@@ -277,8 +279,8 @@ class OffsetSampler {
   // No face of a cube has both ends of one diagonal inside and both of the other outside: the nearer of these counts as
   // inside. Then a face has one sheet, and the mesh two triangles at an edge.
   void part_sheets() {
-    std::vector<Index> open(cubes_.size());
-    std::iota(open.begin(), open.end(), 0u);
+    std::vector<Index> open(cubes_.size() - parted_);
+    std::iota(open.begin(), open.end(), static_cast<Index>(parted_));
     while (!open.empty()) {
       const std::array<Index, 8> corners = corners_of_[open.back()];
       open.pop_back();
@@ -302,9 +304,10 @@ class OffsetSampler {
         add_values();
       }
     }
+    parted_ = cubes_.size();
   }
 
-  // For each sheet the middle of where cube_edges cross it.
+  // For each sheet the middle of where edges cross it.
   void add_vertices(Code cube, const Sheets& sheets, const std::array<float, 8>& value,
                     std::vector<Point3>& points) const {
     std::array<Vector3, 4> sum{};
@@ -324,6 +327,7 @@ class OffsetSampler {
       points.push_back(place(cube, options_.cell, 0) + (options_.cell / count[s]) * sum[s]);
     }
   }
+
   // Two triangles across the edge along `axis` at the first corner of cube c, between the four cubes around it.
   void add_square(std::size_t c, unsigned axis, bool from_inside, const std::vector<std::uint8_t>& inside,
                   const std::vector<Index>& first, ClosedMesh& made) const {
@@ -355,7 +359,8 @@ class OffsetSampler {
   unsigned levels_ = 0;
   Numbers cubes_, corners_;
   std::vector<std::array<Index, 8>> corners_of_;  // of each cube
-  std::size_t closed_ = 0;                        // of cubes: all around their crossed edges are there
+  std::size_t closed_ = 0;                        // of cubes: those around all their crossed edges are there
+  std::size_t parted_ = 0;                        // and no face of theirs is crossed four times
   std::vector<float> values_;                     // of corners: distance less the offset
 };
 
@@ -422,20 +427,8 @@ void keep_outermost(ClosedMesh& mesh, const WorkMonitor& monitor) {
       if (other != s && volume[other] > volume[s] && inside(s, other)) kept[s] = 0;
     }
   }
-  ClosedMesh left;
-  std::vector<Index> name(mesh.points.size(), no_index);
-  for (const auto& t : mesh.triangles) {
-    if (kept[shells.of_vertex[t[0]]] == 0) continue;
-    auto& made = left.triangles.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (name[t[k]] == no_index) {
-        name[t[k]] = static_cast<Index>(left.points.size());
-        left.points.push_back(mesh.points[t[k]]);
-      }
-      made[k] = name[t[k]];
-    }
-  }
-  mesh = std::move(left);
+  std::erase_if(mesh.triangles, [&](const auto& t) { return kept[shells.of_vertex[t[0]]] == 0; });
+  drop_unused_points(mesh);
 }
 
 }  // namespace

@@ -39,13 +39,17 @@ LimitTriangle limit_triangle(const Patch& patch) {
   return result;
 }
 
-Vector3 longest_edge(const Triangle& triangle) {
-  Vector3 longest;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3 edge = triangle[(k + 1) % 3] - triangle[k];
-    if (max_abs(edge) > max_abs(longest)) longest = edge;
+std::size_t longest_side(const Triangle& triangle) {
+  const auto length = [&](std::size_t k) { return max_abs(triangle[(k + 1) % 3] - triangle[k]); };
+  std::size_t longest = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (length(k) > length(longest)) longest = k;
   }
   return longest;
+}
+Vector3 longest_edge(const Triangle& triangle) {
+  const std::size_t k = longest_side(triangle);
+  return triangle[(k + 1) % 3] - triangle[k];
 }
 
 Vector3 unit_normal(const Triangle& triangle) {

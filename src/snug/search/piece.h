@@ -43,7 +43,8 @@ struct LimitTriangle {
 /// The corners of a patch.
 [[nodiscard]] LimitTriangle limit_triangle(const Patch& patch);
 
-/// An edge that no other is much longer than: by their largest coordinates.
+/// An edge that no other is much longer than, by their largest coordinates: k if it runs from corner k to the next; the edge.
+[[nodiscard]] std::size_t longest_side(const Triangle& triangle);
 [[nodiscard]] Vector3 longest_edge(const Triangle& triangle);
 /// The normal of a triangle, of length 1 up to a few roundings; zero if it has none.
 [[nodiscard]] Vector3 unit_normal(const Triangle& triangle);
