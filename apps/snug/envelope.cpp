@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
@@ -121,8 +123,11 @@ Found find(const Surface& surface, const Options& options, double error, const W
   Found found;
   if (wrap.outcome == Outcome::budget_spent && !how.clearance && !surface.open_reason() &&
       count_elements(surface.mesh(), surface.scheme()).many_sided_edges == 0) {
-    found.hulls = hull(surface, {.error = error, .inner = false, .single_precision = how.single_precision},
-                       run_of(options, monitor));
+    // Triangles take more memory than cubes.
+    Run run = run_of(options, monitor);
+    run.max_splits = std::min(options.max_splits, default_splits::hull);
+    found.hulls =
+        hull(surface, {.error = error, .inner = false, .single_precision = how.single_precision}, run);
     return found;
   }
   found.clearance = wrap.clearance;
@@ -184,7 +189,8 @@ Command envelope_command() {
       Group::own, "--part FILE", &options->part,
       "Report whether the limit surface of this control mesh lies inside the envelope, and how far from it");
   add_common_options(list, *options);
-  list.add(Group::effort, "--max-splits N", &options->max_splits, "At most N cubes in which it is sampled")
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
+           "At most N cubes in which it is sampled, or triangles of a hull")
       .formerly("--budget");
   return {
       "envelope",
