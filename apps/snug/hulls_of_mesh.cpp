@@ -30,6 +30,8 @@ const char* explained(HullFault fault) {
       return "the hulls could not be kept off each other; try a smaller --error";
     case HullFault::too_few_triangles:
       return "the budget allows too few triangles; give a larger --max-splits or --error";
+    case HullFault::through_itself:
+      return "the surface goes through itself there, so that it has no hulls; snug envelope wraps it";
     case HullFault::not_around:
       break;
   }
@@ -41,6 +43,10 @@ const char* explained(HullFault fault) {
 std::string sentence(const HullProblem& problem, const char* owner) {
   const auto& [x, y, z] = problem.place;
   const std::string at = problem.owner ? fmt::format(" at {} {}", owner, *problem.owner) : "";
+  if (problem.fault == HullFault::through_itself) {
+    return fmt::format("{}({:.6g} {:.6g} {:.6g}): {}", problem.owner ? at.substr(1) + ", " : "", x, y, z,
+                       explained(problem.fault));
+  }
   return fmt::format("{} hull{}, near ({:.6g} {:.6g} {:.6g}): {}", problem.inner ? "inner" : "outer", at, x,
                      y, z, explained(problem.fault));
 }

@@ -361,7 +361,7 @@ TEST_F(journals, keep_what_was_finished_before_an_interrupt) {
   write_scene(file_, random_scene(150, 6, 10));
   const Json expected = answer({"collide", "--scene", file_});
   int interrupted = 0;
-  for (int milliseconds = 10;; milliseconds += 20) {
+  for (int milliseconds = 10;; milliseconds += 20 + milliseconds / 4) {
     const Outcome outcome = interrupt_snug(words({"--json"}), milliseconds);
     if (outcome.status == 0) {
       EXPECT_EQ(comparable(outcome.out), expected);

@@ -98,5 +98,27 @@ TEST(hull_problems, of_a_component_on_the_wrong_side_are_found) {
   }
 }
 
+// What goes through itself has no hulls, and that is said at once; what only touches itself may have an inner one.
+TEST(hull_problems, of_a_surface_through_itself_are_where_it_goes_through) {
+  const auto two = [](const std::array<double, 3>& apart, Scheme scheme) {
+    const TaggedMesh mesh = both(meshes::cube(), moved(meshes::cube(), 1, apart));
+    return Surface(testing::control_mesh(mesh), {.scheme = scheme});
+  };
+  for (const Scheme scheme : {Scheme::catmark, Scheme::bilinear}) {
+    const Hulls none = hull(two({0.3, 0.2, 0.1}, scheme), {.error = 0.02});
+    EXPECT_EQ(none.outcome, Outcome::at_rounding);
+    ASSERT_FALSE(none.problems.empty());
+    for (const HullProblem& problem : none.problems) {
+      EXPECT_EQ(problem.fault, HullFault::through_itself);
+      EXPECT_TRUE(problem.owner.has_value());
+    }
+  }
+  const Surface touching = two({1, 0, 0}, Scheme::bilinear);
+  EXPECT_EQ(hull(touching, {.error = 0.02, .outer = false}).outcome, Outcome::complete);
+  for (const HullProblem& problem : hull(touching, {.error = 0.02, .inner = false}).problems) {
+    EXPECT_NE(problem.fault, HullFault::through_itself);
+  }
+}
+
 }  // namespace
 }  // namespace snug::hull_problems_test

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <set>
 #include <span>
@@ -11,11 +12,14 @@
 #include <unordered_map>
 #include <utility>
 
+#include <snug/contacts.h>
 #include <snug/distance.h>
+#include <snug/evaluate.h>
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
 #include <snug/query/pair_queries.h>
+#include <snug/query/self.h>
 #include <snug/query/tessellate.h>
 #include <snug/search/feet.h>
 #include <snug/search/piece.h>
@@ -41,6 +45,7 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
     {"meets-other", HullFault::meets_other},
     {"not-around", HullFault::not_around},
     {"too-few-triangles", HullFault::too_few_triangles},
+    {"through-itself", HullFault::through_itself},
 });
 
 // Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller,
@@ -56,13 +61,17 @@ constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
 // And how far Bezier points of its parts may stick out of them.
 constexpr double flat_share = 0x1p-5;
 constexpr std::size_t max_problems = 100, max_contacts = 1'000'000;
-constexpr int max_rounds = 24;
+constexpr int max_rounds = 24, asked_after = 0;  // whether the surface meets itself
 // Most quadratics that facets are kept off: of the budget, and beside a few of them.
 constexpr std::uint64_t pieces_a_triangle = 16, pieces_beside = 1u << 17;
 // To show that a hull is off the surface: splits, and different pieces split of each, for each of its triangles and
 // beside those.
 constexpr std::uint64_t splits_a_triangle = 16, splits_beside = 1'000'000;
 constexpr std::uint64_t splits_kept_a_triangle = 2, splits_kept_beside = 50'000;
+// To show that a surface without hulls at first meets itself, pairs of pieces: a second or two.
+constexpr std::uint64_t tests_a_patch = 4, tests_beside = 100'000;
+// Of the angle between sheets that go through each other.
+constexpr double least_sine = 0x1p-10;
 
 // How triangles meet along their edges.
 struct Sides {
@@ -203,6 +212,29 @@ class TrianglesAround {
   std::vector<std::uint32_t> begins_, triangles_;
 };
 
+// Do the two sheets lie across each other there? Where they only touch there may be a hull on one side.
+bool goes_through(const Surface& surface, const SelfContactPair& pair) {
+  const auto a = normal_at(surface, *pair.points[0].at), b = normal_at(surface, *pair.points[1].at);
+  return !pair.touching && a && b && length(cross(a->direction, b->direction)) > least_sine;
+}
+
+// Where a surface is proved to meet itself, and goes through.
+std::vector<HullProblem> contacts_of(const Surface& surface, const LimitSurface& limit, bool inner,
+                                     const Run& run) {
+  const WorkMonitor monitor = stop_only(run);
+  const SelfContact found =
+      contact_far_apart(surface, {.threads = run.threads,
+                                  .monitor = &monitor,
+                                  .max_splits = tests_beside + tests_a_patch * limit.patch_count()});
+  std::vector<HullProblem> problems;
+  if (found.verdict != SelfVerdict::intersecting) return problems;
+  for (const SelfContactPair& pair : found.pairs) {
+    if (!goes_through(surface, pair)) continue;
+    problems.push_back({HullFault::through_itself, inner, pair.points[0].point, pair.points[0].at->owner});
+  }
+  return problems;
+}
+
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
  public:
@@ -219,8 +251,9 @@ class OneHull {
         tolerances_(surface.owner_count(), *options.error),
         pieces_{pieces} {}
 
-  // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
-  std::vector<HullProblem> run() {
+  // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left; those of `hopeless`
+  // alone if that names some, which is asked once something is wrong.
+  std::vector<HullProblem> run(const std::function<std::vector<HullProblem>()>& hopeless) {
     for (int round = 0;; ++round) {
       LocalTessellation made = tessellate(surface_, tolerances_.of_owners(), {.normals = false}, run_);
       mesh_ = std::move(made.mesh);
@@ -236,6 +269,9 @@ class OneHull {
       if (!pieces_.begin_round(surface_, error, run_) && !blame_budget()) break;
       if (!facets_.any_turned) keep_off();
       if (problems_.empty()) break;
+      if (round == asked_after) {
+        if (std::vector<HullProblem> found = hopeless(); !found.empty()) return found;
+      }
       if (round + 1 == max_rounds || !whole_mesh() || !refine()) break;
     }
     return std::move(problems_);
@@ -627,14 +663,19 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
   std::optional<PieceSet> pieces(std::in_place);
   Hulls result;
+  bool may_meet_itself = true;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
     OneHull side(surface, options, inner, *pieces, run);
-    const std::vector<HullProblem> problems = side.run();
+    const std::vector<HullProblem> problems = side.run([&] {
+      return std::exchange(may_meet_itself, false) ? contacts_of(handle, surface, inner, run)
+                                                   : std::vector<HullProblem>();
+    });
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
     result.closed = !side.has_border_edges();
     (inner ? result.inner : result.outer) = side.take();
     monitor_of(run).report(inner ? 0.3 : 0.6);
+    if (!problems.empty() && problems[0].fault == HullFault::through_itself) break;
   }
   pieces.reset();
   if (result.problems.empty()) result.problems = problems_of(handle, result, options, run);

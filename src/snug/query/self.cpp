@@ -1,4 +1,4 @@
-#include <snug/contacts.h>
+#include <snug/query/self.h>
 #include <snug/search/surface_data.h>
 
 #include <algorithm>
@@ -133,21 +133,21 @@ class SelfSearch {
     }
   }
 
-  // Faces of `facets` do not meet each other.
-  [[nodiscard]] SelfContact run(const ComparedFacets& facets) {
+  // Faces of `facets` do not meet each other. Without `stars` pieces with a common corner are not looked at.
+  [[nodiscard]] SelfContact run(const ComparedFacets& facets, bool stars) {
     const std::vector<PieceName> pieces = complex_.pieces();
     if (pieces.empty()) {
       throw InputError(
           InputProblem::refused,
           "no face has a limit surface: all are holes or touch the boundary; use another boundary rule");
     }
-    if (!facets.all) look_for_contact(pieces, facets.faces);
-    if (options_.within && !crossing_) look_for_near();
+    if (!facets.all) look_for_contact(pieces, facets.faces, stars);
+    if (options_.within && crossings_.empty()) look_for_near();
     return result();
   }
 
  private:
-  void look_for_contact(const std::vector<PieceName>& pieces, const std::vector<bool>& facets) {
+  void look_for_contact(const std::vector<PieceName>& pieces, const std::vector<bool>& facets, bool stars) {
     unsigned level = complex_.first_level();
     const auto are_facets = [&](const NamePair& pair) {
       const auto is_facet = [&](const PieceName& piece) {
@@ -156,11 +156,20 @@ class SelfSearch {
       };
       return is_facet(pair.first) && is_facet(pair.second);
     };
-    std::vector<NamePair> far = far_pairs(pieces), live = near_pairs(pieces);
+    std::vector<NamePair> far = far_pairs(pieces);
     std::erase_if(far, are_facets);
-    std::erase_if(live, are_facets);
+    if (!stars) {
+      for (std::uint64_t most = 16; !far.empty() && crossings_.empty() && budget_ >= far.size(); most *= 16) {
+        unknown_.clear();
+        far = compare_far(far, std::min(most, max_tests));
+        if (most >= max_tests) break;
+      }
+      return;
+    }
     compare_far(far);
-    for (unsigned depth = 0; !live.empty() && !crossing_; ++depth, ++level) {
+    std::vector<NamePair> live = near_pairs(pieces);
+    std::erase_if(live, are_facets);
+    for (unsigned depth = 0; !live.empty() && crossings_.empty(); ++depth, ++level) {
       monitor_.checkpoint();
       drop_proved(live, level);
       if (live.empty()) break;
@@ -273,20 +282,25 @@ class SelfSearch {
     return next;
   }
 
-  void compare_far(const std::vector<NamePair>& pairs) {
-    if (pairs.empty()) return;
-    const std::uint64_t each = std::min(max_tests, budget_ / pairs.size());
+  // Returns the pairs that are neither apart nor cross, as far as `most` tests of each can tell.
+  std::vector<NamePair> compare_far(const std::vector<NamePair>& pairs, std::uint64_t most = max_tests) {
+    if (pairs.empty()) return {};
+    const std::uint64_t each = std::min(most, budget_ / pairs.size());
     std::vector<Found> found(pairs.size());
     for_each_with_pieces(model_, pairs.size(), run_.threads, monitor_, [&](PieceCache& kept, std::size_t i) {
       found[i] = PairComparison(kept, std::max<std::uint64_t>(each, 1)).run(pairs[i]);
     });
-    for (const Found& one : found) {
+    std::vector<NamePair> unknown;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Found& one = found[i];
       answer_.pair_tests += one.tests;
       spend(one.tests);
-      if (one.what == Found::What::crossing) crossing_ = true;
-      if (one.what != Found::What::apart) found_.push_back(one);
-      if (one.what == Found::What::unknown && each < max_tests && one.tests >= each) budget_spent_ = true;
+      keep(one);
+      if (one.what != Found::What::unknown) continue;
+      unknown.push_back(pairs[i]);
+      if (each < most && one.tests >= each) budget_spent_ = true;
     }
+    return unknown;
   }
 
   void leave(const NamePair& pair) {
@@ -300,25 +314,29 @@ class SelfSearch {
       return TriangleParameter{k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
     };
     found.at = {corner_at(pair.first), corner_at(pair.second)};
-    found_.push_back(found);
+    keep(found);
+  }
+  // Of each sort as many as an answer holds.
+  void keep(const Found& found) {
+    if (found.what == Found::What::apart) return;
+    auto& of_its_sort = found.what == Found::What::crossing ? crossings_ : unknown_;
+    if (of_its_sort.size() < SelfContact::max_pairs) of_its_sort.push_back(found);
   }
 
   void spend(std::uint64_t work) { budget_ -= std::min(budget_, work); }
 
   SelfContact result() {
-    answer_.verdict = crossing_                                        ? SelfVerdict::intersecting
-                      : !nearness_.near.empty()                        ? SelfVerdict::near
-                      : found_.empty() && nearness_.unresolved.empty() ? SelfVerdict::clear
-                                                                       : SelfVerdict::undecided;
+    answer_.verdict = !crossings_.empty()                                ? SelfVerdict::intersecting
+                      : !nearness_.near.empty()                          ? SelfVerdict::near
+                      : unknown_.empty() && nearness_.unresolved.empty() ? SelfVerdict::clear
+                                                                         : SelfVerdict::undecided;
     answer_.outcome = outcome_of(answer_.verdict != SelfVerdict::undecided, budget_spent_);
     if (answer_.verdict != SelfVerdict::near) {
-      for (const Found& found : found_) {
-        if ((found.what == Found::What::crossing) == crossing_) add_place(found);
-      }
+      for (const Found& found : crossings_.empty() ? unknown_ : crossings_) add_place(found);
     }
     if (answer_.verdict == SelfVerdict::near) {
       for (const ProximityPair& pieces : nearness_.near) add_place(pieces, SelfVerdict::near);
-    } else if (!crossing_) {
+    } else if (crossings_.empty()) {
       for (const ProximityPair& pieces : nearness_.unresolved) add_place(pieces, SelfVerdict::undecided);
     }
     return answer_;
@@ -339,9 +357,9 @@ class SelfSearch {
   void add_place(const Found& found) {
     if (answer_.pairs.size() == SelfContact::max_pairs) return;
     SelfContactPair pair;
-    pair.verdict = crossing_ ? SelfVerdict::intersecting : SelfVerdict::undecided;
+    pair.verdict = !crossings_.empty() ? SelfVerdict::intersecting : SelfVerdict::undecided;
     const double error = set_points(pair, {found.pieces.first, found.pieces.second}, found.at);
-    if (!crossing_) {
+    if (crossings_.empty()) {
       pair.distance.upper = distance_at_most(pair.points[1].point - pair.points[0].point, enlarged(error));
     }
     answer_.pairs.push_back(pair);
@@ -364,8 +382,8 @@ class SelfSearch {
   const WorkMonitor& monitor_;
   LevelComplex complex_;
   std::uint64_t budget_;
-  std::vector<Found> found_;
-  bool crossing_ = false, budget_spent_ = false;
+  std::vector<Found> crossings_, unknown_;
+  bool budget_spent_ = false;
   Nearness nearness_;
   SelfContact answer_;
 };
@@ -393,7 +411,13 @@ SelfContact self_contact(const Surface& surface, const SelfContactOptions& optio
   const bool clear = facets.answer.verdict == SelfVerdict::clear;
   const bool any = std::find(facets.faces.begin(), facets.faces.end(), true) != facets.faces.end();
   if (!clear || (any && facets.all && !options.within)) return facets.answer;
-  return SelfSearch(surface.data()->bvh(stop_only(run)), options, run).run(facets);
+  return SelfSearch(surface.data()->bvh(stop_only(run)), options, run).run(facets, true);
+}
+
+SelfContact contact_far_apart(const Surface& surface, const Run& run) {
+  const ComparedFacets facets = compare_facets(surface.data()->limit(), run.threads, monitor_of(run));
+  if (facets.answer.verdict == SelfVerdict::intersecting) return facets.answer;
+  return SelfSearch(surface.data()->bvh(stop_only(run)), {}, run).run(facets, false);
 }
 
 }  // namespace snug
