@@ -131,6 +131,7 @@ class Report {
 };
 
 [[nodiscard]] Command info_command();
+[[nodiscard]] Command judge_command();
 [[nodiscard]] Command bound_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command subdivide_command();

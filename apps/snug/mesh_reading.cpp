@@ -19,25 +19,42 @@ std::function<double(double)> weld_distance(const CommonOptions& options) {
   };
 }
 
-void note_coincidences(const ControlMesh& mesh, const std::string& path, const CommonOptions& options) {
-  const Notes note = notes_for(options);
-  if (!note) return;
+std::vector<Finding> coincidences_found(const ControlMesh& mesh) {
   const Coincidences found = coincidences(mesh);
+  std::vector<Finding> findings;
   if (found.vertices > 0) {
     const std::string edges =
         found.edges == 0 ? "" : fmt::format(", and {} boundary edges coincide", found.edges);
-    note(fmt::format(
-        "{}: {} vertices coincide with others, in {} place{}{}: they are not merged; --weld 0 merges them",
-        path, found.vertices, found.places, found.places == 1 ? "" : "s", edges));
+    findings.push_back({"coincident-vertices",
+                        fmt::format("{} vertices coincide with others, in {} place{}{}: they are not merged",
+                                    found.vertices, found.places, found.places == 1 ? "" : "s", edges),
+                        "--weld 0 merges them"});
   }
   if (found.near > 0) {
     const std::string gaps =
         found.nearest == found.farthest
             ? text_at_most(found.farthest, true)
             : fmt::format("{} to {}", text_at_most(found.nearest), text_at_most(found.farthest, true));
-    note(fmt::format("{}: {} boundary {} {} from another one: not merged; --weld {} merges {}", path,
-                     found.near, found.near == 1 ? "vertex is" : "vertices are", gaps,
-                     text_at_most(found.farthest, true), found.near == 1 ? "it" : "them"));
+    findings.push_back({"near-vertices",
+                        fmt::format("{} boundary {} {} from another one: not merged", found.near,
+                                    found.near == 1 ? "vertex is" : "vertices are", gaps),
+                        fmt::format("--weld {} merges {}", text_at_most(found.farthest, true),
+                                    found.near == 1 ? "it" : "them")});
+  }
+  if (found.on_edges > 0) {
+    findings.push_back({"t-junctions",
+                        fmt::format("{} boundary {} on another boundary edge: the faces are not joined there",
+                                    found.on_edges, found.on_edges == 1 ? "vertex stands" : "vertices stand"),
+                        ""});
+  }
+  return findings;
+}
+
+void note_coincidences(const ControlMesh& mesh, const std::string& path, const CommonOptions& options) {
+  const Notes note = notes_for(options);
+  if (!note) return;
+  for (const Finding& found : coincidences_found(mesh)) {
+    note(path + ": " + found.text + (found.mends.empty() ? "" : "; " + found.mends));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common.h"
 
@@ -11,7 +12,16 @@ namespace snug::command {
 /// Errors:    UsageError for what is no length.
 [[nodiscard]] std::function<double(double)> weld_distance(const CommonOptions& options);
 
-/// A note about vertices and boundary edges that stand where others do, or nearly so.
+/// A trait of a mesh or its surface that may not be meant.
+struct Finding {
+  std::string kind;   ///< such as "needles"
+  std::string text;   ///< a line without a full stop
+  std::string mends;  ///< an option or a command that helps; empty if there is none
+};
+
+/// Of vertices and boundary edges that stand where others do, or nearly so.
+[[nodiscard]] std::vector<Finding> coincidences_found(const ControlMesh& mesh);
+/// Notes of these.
 void note_coincidences(const ControlMesh& mesh, const std::string& path, const CommonOptions& options);
 
 /// The angle of --sharp in degrees; nothing without it.

@@ -51,6 +51,7 @@ struct MeshCounts {
   std::size_t used_vertices = 0;
   std::size_t edges = 0;
   std::size_t boundary_edges = 0;    ///< edges with one face
+  std::size_t borders = 0;           ///< sets of these joined by vertices
   std::size_t many_sided_edges = 0;  ///< edges with three faces or more
   std::size_t components = 0;        ///< sets of faces joined by vertices
   bool boxes_meet = false;           ///< do the boxes around two components have a point in common?
@@ -59,7 +60,9 @@ struct MeshCounts {
   /// Used vertices unlike those of the scheme's regular lattice; with a dual scheme, faces, of which all count.
   std::size_t extraordinary = 0;
   std::size_t creases = 0;  ///< tags on edges of faces
-  bool closed = false;      ///< it has faces, and along every edge as many run one way as the other
+  std::size_t needles =
+      0;  ///< faces a hundred times as long as wide or more, but for those of no area: in double precision
+  bool closed = false;  ///< it has faces, and along every edge as many run one way as the other
 };
 /// Cost:      linear, times the logarithm of the largest valence.
 [[nodiscard]] SNUG_API MeshCounts count_elements(const ControlMesh& mesh, Scheme scheme);
@@ -73,6 +76,8 @@ struct Coincidences {
   /// of one of them from the vertex that it would become.
   std::size_t near = 0;
   double nearest = 0, farthest = 0;
+  /// Vertices of edges with one face that stand within `reach` of the inside of another such edge: T-junctions.
+  std::size_t on_edges = 0;
   double reach = 0;  ///< 2^-17 of the longest side of the box of the vertices that faces use
 };
 /// Finds them; nothing is changed. Meshes with faces that name vertices which are not there, or with coordinates that are

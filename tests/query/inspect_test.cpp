@@ -184,5 +184,39 @@ TEST(coincidences, a_closed_mesh_with_distinct_vertices_and_one_that_is_broken_h
   EXPECT_EQ(coincidences(ControlMesh{}).vertices, 0u);
 }
 
+// Two squares in a row beside one as long as both: the vertex between the two stands on its edge.
+TEST(coincidences, of_vertices_on_edges) {
+  const auto sheets = [](double off) {
+    ControlMesh mesh;
+    mesh.points = {{0, 0, 0},   {2, 0, 0},   {2, 1, 0},  {0, 1, 0},  {0, off, 0},
+                   {1, off, 0}, {2, off, 0}, {0, -1, 0}, {1, -1, 0}, {2, -1, 0}};
+    for (const auto& face : {std::array{0, 1, 2, 3}, std::array{7, 8, 5, 4}, std::array{8, 9, 6, 5}}) {
+      std::array<VertexId, 4> vertices;
+      for (std::size_t k = 0; k < 4; ++k) vertices[k] = VertexId(static_cast<std::size_t>(face[k]));
+      mesh.add_face(vertices);
+    }
+    return mesh;
+  };
+  EXPECT_EQ(coincidences(sheets(0)).on_edges, 1u);
+  EXPECT_EQ(coincidences(sheets(-1e-6)).on_edges, 1u);
+  EXPECT_EQ(coincidences(sheets(-1e-3)).on_edges, 0u);
+  const MeshCounts counts = count_elements(sheets(0), Scheme::catmark);
+  EXPECT_EQ(counts.borders, 2u);
+  EXPECT_EQ(counts.boundary_edges, 10u);
+}
+
+TEST(count_elements, tells_needles_from_faces_of_no_area) {
+  const auto count = [](double height) {
+    ControlMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0.3, height, 0}};
+    mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
+    return count_elements(mesh, Scheme::loop).needles;
+  };
+  EXPECT_EQ(count(0.02), 0u);
+  EXPECT_EQ(count(0.009), 1u);
+  EXPECT_EQ(count(1e-100), 1u);
+  EXPECT_EQ(count(0), 0u);
+}
+
 }  // namespace
 }  // namespace snug::inspect_test

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <snug/bounds/fit_kernels.h>
+#include <snug/bvh/box_tree.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/half_edges.h>
@@ -22,6 +23,8 @@ namespace snug {
 namespace {
 
 using Edge = std::pair<VertexId, VertexId>;
+
+constexpr double needle_ratio = 100;
 
 bool has_vertices_of(const ControlMesh& mesh, std::span<const VertexId> face) {
   return std::all_of(face.begin(), face.end(), [&](VertexId v) { return v.index() < mesh.vertex_count(); });
@@ -142,6 +145,37 @@ std::size_t count_coincident(const std::vector<Edge>& boundary, const std::vecto
   return count;
 }
 
+// Places that stand within reach of an edge, and farther from its ends.
+std::size_t count_on_edges(const std::vector<Point3>& places, const ControlMesh& mesh,
+                           const std::vector<Edge>& boundary, double reach) {
+  if (boundary.empty()) return 0;
+  std::vector<Box3> boxes{Box3{}};  // the tree finds items above one of them
+  for (const auto& [a, b] : boundary) {
+    Box3& box = boxes.emplace_back();
+    box.add(mesh.points[a.index()]);
+    box.add(mesh.points[b.index()]);
+  }
+  boxes[0] = boxes[1];
+  const BoxTree tree(boxes);
+  const auto is_on = [&](const Point3& p, const Edge& edge) {
+    const Point3 &a = mesh.points[edge.first.index()], &b = mesh.points[edge.second.index()];
+    const Vector3 along = b - a, from = p - a;
+    const double square = dot(along, along), t = dot(from, along) / square;
+    if (!(square > 0) || !(t > 0 && t < 1)) return false;
+    const double long_side = std::sqrt(square);
+    return length(from - t * along) <= reach && std::min(t, 1 - t) * long_side > reach;
+  };
+  std::size_t count = 0;
+  for (const Point3& p : places) {
+    Box3 box;
+    box.add(p);
+    bool found = false;
+    tree.find_near(box, reach, 0, [&](std::uint32_t item) { found = found || is_on(p, boundary[item - 1]); });
+    count += found;
+  }
+  return count;
+}
+
 void find_near_vertices(const ControlMesh& mesh, const std::vector<Edge>& boundary,
                         const std::vector<VertexId>& places, Coincidences& found) {
   std::vector<Point3> points;  // one a place
@@ -162,6 +196,21 @@ void find_near_vertices(const ControlMesh& mesh, const std::vector<Edge>& bounda
     found.farthest = std::max(found.farthest, apart);
     ++found.near;
   }
+  found.on_edges = count_on_edges(points, mesh, boundary, found.reach);
+}
+
+// Is the face long beside its area? Of no area counts as not.
+bool is_needle(const ControlMesh& mesh, std::span<const VertexId> face) {
+  Vector3 area{};
+  double longest = 0;
+  const Point3& first = mesh.points[face[0].index()];
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const Point3 &a = mesh.points[face[k].index()], &b = mesh.points[face[(k + 1) % face.size()].index()];
+    area = area + cross(a - first, b - first);
+    longest = std::max(longest, length(b - a));
+  }
+  const double twice = length(area);
+  return twice > 0 && twice / longest < longest / needle_ratio;
 }
 
 }  // namespace
@@ -206,6 +255,16 @@ MeshCounts count_elements(const ControlMesh& mesh, Scheme scheme) {
   for (std::size_t f = 0; traits.dual && f < mesh.face_count(); ++f)
     result.extraordinary += mesh.face(FaceId(f)).size() != traits.regular_valence;
   result.creases = mesh.tags.creases.size() - loose_creases(mesh).size();
+  DisjointSets borders(mesh.vertex_count());
+  for (std::size_t e = 0; e < groups.edge_count(); ++e) {
+    if (groups.of_edge(EdgeId(e)).size() != 1) continue;
+    const auto [a, b] = ends_of(faces, groups, EdgeId(e));
+    borders.join(a.value(), b.value());
+  }
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    result.borders += boundary[v] && borders.least(static_cast<std::uint32_t>(v)) == v;
+  for (std::size_t f = 0; f < faces.face_count(); ++f)
+    result.needles += is_needle(mesh, faces.face(FaceId(f)));
   return result;
 }
 

@@ -1,0 +1,294 @@
+#include <snug/bound.h>
+#include <snug/contacts.h>
+#include <snug/hull.h>
+#include <snug/measure.h>
+#include <snug/tessellate.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "common.h"
+#include "mesh_reading.h"
+#include "mesh_summary.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+constexpr double share_of_size = 0.01;  // errors and precisions of the questions
+constexpr std::size_t many_faces = 32;  // at a vertex: questions about what is near it take longer
+constexpr std::size_t max_findings = 12, max_defects = 3;
+constexpr std::chrono::milliseconds look_again{20};
+
+struct Options : CommonOptions {
+  std::string mesh;
+  int seconds = 10;
+};
+
+// A monitor that stops at an interrupt and some time after it was made.
+class TimeLimit {
+ public:
+  explicit TimeLimit(int seconds)
+      : monitor_(stopped_by_interrupts()), watch_([this, seconds] { wait(seconds); }) {
+    monitor_.stop = &stop_;
+  }
+  ~TimeLimit() {
+    {
+      const std::lock_guard lock(mutex_);
+      done_ = true;
+    }
+    ended_.notify_all();
+    watch_.join();
+  }
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+  [[nodiscard]] const WorkMonitor& monitor() const { return monitor_; }
+
+ private:
+  void wait(int seconds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+    std::unique_lock lock(mutex_);
+    while (!ended_.wait_for(lock, look_again, [&] { return done_; })) {
+      if (stop_requested || std::chrono::steady_clock::now() >= end) stop_ = true;
+    }
+  }
+
+  WorkMonitor monitor_;
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool done_ = false;
+  std::thread watch_;
+};
+
+// What a question was answered with: a word, and a line for people.
+struct Answer {
+  const char* question;
+  std::string word{}, text{};
+  double seconds = 0;
+};
+
+class Judge {
+ public:
+  Judge(const Options& options, const Surface& surface, std::vector<Finding>& findings)
+      : options_(options), surface_(surface), findings_(findings) {}
+
+  [[nodiscard]] std::vector<Answer> run() {
+    ask("self-contact", [&](const Run& run, Answer& answer) { look_at_itself(run, answer); });
+    ask("measure", [&](const Run& run, Answer& answer) { take_measures(run, answer); });
+    ask("bound", [&](const Run& run, Answer& answer) {
+      const BoundSummary found = bound(
+          surface_, {.error = error()}, [](const PatchEnclosure&) {}, run);
+      answer.word = name_of(found.outcome);
+      answer.text = fmt::format("{} enclosures", found.count);
+    });
+    ask("tessellate", [&](const Run& run, Answer& answer) {
+      const Tessellation found = tessellate(surface_, {.error = error()}, run);
+      answer.word = name_of(found.outcome);
+      answer.text = fmt::format("{} triangles", found.triangles.size());
+    });
+    ask("hull", [&](const Run& run, Answer& answer) {
+      const Hulls found = hull(surface_, {.error = error()}, run);
+      answer.word = name_of(found.outcome);
+      answer.text = found.outcome != Outcome::complete
+                        ? fmt::format("none, {}", name_of(found.problems[0].fault))
+                        : fmt::format("{} triangles inside and {} outside", found.inner->triangles.size(),
+                                      found.outer->triangles.size());
+    });
+    ask("envelope", [&](const Run& run, Answer& answer) {
+      const Envelope found = envelope(surface_, {.error = error()}, run);
+      answer.word = name_of(found.outcome);
+      answer.text = found.outcome != Outcome::complete
+                        ? fmt::format("none, {}", name_of(found.problems[0].fault))
+                        : fmt::format("{} triangles", found.triangles.size());
+    });
+    return std::move(answers_);
+  }
+
+ private:
+  [[nodiscard]] double error() const { return share_of_size * surface_.size(); }
+
+  // Refusals are answers, too.
+  template <class Question>
+  void ask(const char* name, const Question& question) {
+    Answer answer{name};
+    const auto start = std::chrono::steady_clock::now();
+    ProgressBar bar("asking " + std::string(name), options_.quiet);
+    try {
+      const TimeLimit limit(options_.seconds);
+      question(Run{.threads = options_.threads, .monitor = &limit.monitor()}, answer);
+    } catch (const Interrupted&) {
+      if (stop_requested) throw;
+      answer.word = "out-of-time";
+      answer.text = fmt::format("no answer within {} seconds", options_.seconds);
+    } catch (const InputError& refusal) {
+      answer.word = "refused";
+      answer.text = refusal.what();
+      if (const std::string head = std::string(name) + ": "; answer.text.starts_with(head))
+        answer.text.erase(0, head.size());
+    }
+    answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    answers_.push_back(std::move(answer));
+  }
+
+  void look_at_itself(const Run& run, Answer& answer) {
+    const SelfContact found = self_contact(surface_, {}, run);
+    answer.word = answer.text = name_of(found.verdict);
+    if (found.verdict == SelfVerdict::clear) return;
+    const char* const owner = surface_.traits().owner();
+    const auto place = [&](const SelfContactPair& pair) {
+      const Point3& p = pair.points[0].point;
+      return fmt::format("{} {} and {}, at {:.6g} {:.6g} {:.6g}", owner, pair.points[0].at->owner,
+                         pair.points[1].at->owner, p.x, p.y, p.z);
+    };
+    const bool meets = found.verdict == SelfVerdict::intersecting;
+    std::string text = meets ? "the surface meets itself: " : "not proved clear of itself: ";
+    text += place(found.pairs[0]);
+    if (found.pairs.size() > 1) {
+      text += fmt::format(", and at {} more places{}", found.pairs.size() - 1,
+                          found.pairs.size() == SelfContact::max_pairs ? " at least" : "");
+    }
+    findings_.push_back({meets ? "meets-itself" : "self-contact-undecided", text,
+                         meets ? "snug envelope makes a closed mesh around it" : ""});
+  }
+
+  void take_measures(const Run& run, Answer& answer) {
+    const Measures found = measure(surface_, {.relative = share_of_size}, run);
+    answer.word = name_of(found.outcome);
+    answer.text = fmt::format("area {:.4g} to {:.4g}", found.area.lower, found.area.upper);
+    if (!found.volume) return;
+    answer.text += fmt::format(", volume {:.4g} to {:.4g}", found.volume->lower, found.volume->upper);
+    if (found.volume->upper < 0) {
+      findings_.push_back({"inside-out", "the volume is negative: faces look clockwise from outside", ""});
+    }
+  }
+
+  const Options& options_;
+  const Surface& surface_;
+  std::vector<Finding>& findings_;
+  std::vector<Answer> answers_;
+};
+
+void find_in_mesh(const ControlMesh& mesh, const MeshSummary& summary, const Options& options,
+                  std::vector<Finding>& findings) {
+  const MeshCounts& counts = summary.counts;
+  const SchemeTraits& traits = traits_of(summary.scheme);
+  for (std::size_t i = 0; i < std::min(summary.defects.size(), max_defects); ++i) {
+    const Defect& defect = summary.defects[i];
+    findings.push_back({name_of(defect.kind), defect.text, ""});
+  }
+  if (summary.defects.size() > max_defects) {
+    findings.push_back({"defects",
+                        fmt::format("{} more defects of the mesh", summary.defects.size() - max_defects),
+                        "snug info lists them"});
+  }
+  if (summary.surface && options.scheme == "auto" && options.sharp.empty() && !traits.local) {
+    const std::string line =
+        smoothing_note(*summary.surface, "--scheme", summary.apart, {.threads = options.threads});
+    if (const std::size_t end = line.find("; "); !line.empty()) {
+      findings.push_back(
+          {"smoothed-triangles", line.substr(0, end), end == std::string::npos ? "" : line.substr(end + 2)});
+    }
+  }
+  for (Finding& found : coincidences_found(mesh)) findings.push_back(std::move(found));
+  if (counts.boundary_edges > 0) {
+    findings.push_back({"open",
+                        fmt::format("open: {} boundary edges in {} border{}, so that there is no inside",
+                                    counts.boundary_edges, counts.borders, counts.borders == 1 ? "" : "s"),
+                        "snug envelope makes a closed mesh around it"});
+  }
+  if (summary.twice) findings.push_back({"overlapping-shell", overlap_sentence(summary), ""});
+  if (counts.needles > 0) {
+    findings.push_back(
+        {"needles", fmt::format("{} faces are a hundred times as long as wide or more", counts.needles), ""});
+  }
+  if (counts.max_valence > many_faces) {
+    findings.push_back(
+        {"valence", fmt::format("a vertex has {} edges: what is near it takes longer", counts.max_valence),
+         ""});
+  }
+}
+
+void write_json(JsonWriter& json, const MeshSummary& summary, const ControlMesh& mesh,
+                const std::vector<Answer>& answers, const std::vector<Finding>& findings) {
+  const MeshCounts& counts = summary.counts;
+  json.field("vertices", mesh.vertex_count())
+      .field("faces", mesh.face_count())
+      .field("closed", counts.closed);
+  json.field("components", counts.components).field("boundary_edges", counts.boundary_edges);
+  json.field("borders", counts.borders).key("limit_to_faces");
+  summary.apart ? json.value(*summary.apart) : json.null();
+  json.key("answers").begin_array();
+  for (const Answer& answer : answers) {
+    json.begin_object()
+        .field("question", answer.question)
+        .field("answer", answer.word)
+        .field("text", answer.text);
+    json.field("seconds", answer.seconds).end_object();
+  }
+  json.end_array().key("findings").begin_array();
+  for (const Finding& found : findings) {
+    json.begin_object().field("kind", found.kind).field("text", found.text).key("mends");
+    found.mends.empty() ? json.null() : json.value(found.mends);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+ExitStatus run(const Options& options) {
+  std::vector<Finding> findings;
+  const std::optional<double> angle = sharp_angle(options);
+  ReadOptions reading{weld_distance(options), [&](const std::string& line) {
+                        findings.push_back({"file", line, ""});
+                      }};
+  const WorkMonitor monitor = stopped_by_interrupts();
+  ControlMesh mesh = read_mesh(options.mesh, reading, {.monitor = &monitor});
+  if (angle) sharpen_mesh(mesh, options.mesh, *angle, options);
+  const MeshSummary summary = summary_of(mesh, options.mesh, options);
+  if (!summary.surface) findings.push_back({"refused", summary.refusal, ""});
+  find_in_mesh(mesh, summary, options, findings);
+  std::vector<Answer> answers;
+  if (summary.surface) answers = Judge(options, *summary.surface, findings).run();
+
+  Report report("judge", options);
+  report.heads({options.mesh}, {name_of(summary.scheme)});
+  if (report.json()) write_json(report.write(), summary, mesh, answers, findings);
+  const std::vector<std::string> lines = lines_of(summary, mesh, options.mesh, options);
+  for (const std::string& line : lines) report.text(line);
+  for (const Answer& answer : answers) {
+    report.text(fmt::format("{:12}  {}, in {:.2g} s", answer.question, answer.text, answer.seconds));
+  }
+  for (std::size_t i = 0; i < std::min(findings.size(), max_findings); ++i) {
+    const Finding& found = findings[i];
+    report.text("note: " + found.text + (found.mends.empty() ? "" : "; " + found.mends));
+  }
+  if (findings.size() > max_findings) {
+    report.text(fmt::format("and {} more; --json lists all", findings.size() - max_findings));
+  }
+  return report.finish();
+}
+
+}  // namespace
+
+Command judge_command() {
+  auto options = std::make_shared<Options>();
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+  list.add(Group::effort, "--seconds N", &options->seconds, "Longest time for one question")
+      .between(1, 86'400);
+  add_common_options(list, *options);
+  return {"judge",
+          Topic::files,
+          "Ask a mesh every question, and tell what it is and what may be wrong with it",
+          {"snug judge pawn.obj", "snug judge part.stl --sharp auto --json"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

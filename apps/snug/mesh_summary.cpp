@@ -1,0 +1,85 @@
+#include "mesh_summary.h"
+
+#include <fmt/core.h>
+#include <snug/evaluate.h>
+#include <support/number.h>
+
+#include "curve.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+// The scheme that the mesh is read with, why, and how far the surface is from its faces.
+std::string taken_as(const MeshSummary& summary, const ControlMesh& mesh, const CommonOptions& options) {
+  const char* const because = options.scheme != "auto" ? "--scheme"
+                              : !options.sharp.empty() ? "--sharp"
+                              : mesh.tags.scheme       ? "the file"
+                                                       : "its faces";
+  const char* const what =
+      summary.scheme == Scheme::flat ? "triangles" : "the control mesh of a limit surface";
+  std::string text =
+      fmt::format("taken as {}, scheme {} (chosen by {})", what, name_of(summary.scheme), because);
+  if (summary.apart && summary.scheme != Scheme::flat) {
+    text += ", within " + text_of_length(*summary.apart, summary.surface->size()) + " of its faces";
+  }
+  return text;
+}
+
+}  // namespace
+
+MeshSummary summary_of(const ControlMesh& mesh, const std::string& path, const CommonOptions& options) {
+  refuse_curves(mesh, options.scheme, path);
+  const SurfaceOptions how = surface_options(options, options.scheme, mesh);
+  MeshSummary summary{.scheme = *how.scheme,
+                      .counts = count_elements(mesh, *how.scheme),
+                      .defects = defects(mesh),
+                      .surface = {},
+                      .refusal = {},
+                      .apart = {},
+                      .twice = {}};
+  try {
+    const Surface surface(mesh, how, {.threads = options.threads});
+    summary.apart = limit_to_faces(surface, {.threads = options.threads});
+    if (summary.counts.closed && summary.counts.boxes_meet && !surface.open_reason()) {
+      const WorkMonitor monitor = stopped_by_interrupts();
+      summary.twice = overlapping_shell(surface, {.monitor = &monitor});
+    }
+    static_cast<void>(surface.kind_count());
+    summary.surface = surface;
+  } catch (const InputError& error) {
+    summary.refusal = error.what();
+  }
+  return summary;
+}
+
+std::vector<std::string> lines_of(const MeshSummary& summary, const ControlMesh& mesh,
+                                  const std::string& path, const CommonOptions& options) {
+  const MeshCounts& counts = summary.counts;
+  const SchemeTraits& traits = traits_of(summary.scheme);
+  std::vector<std::string> lines{path + ": " + taken_as(summary, mesh, options)};
+  if (!summary.surface) lines.push_back("refused: " + summary.refusal);
+  std::string open = "open";
+  if (counts.closed) open = "closed";
+  if (!counts.closed && counts.boundary_edges == 0) {
+    open = "not closed";
+    if (summary.surface) open += ": " + summary.surface->open_reason().value_or("");
+  }
+  lines.push_back(fmt::format("{} vertices, {} edges, {} faces, {}, {} component{}", mesh.vertex_count(),
+                              counts.edges, mesh.face_count(), open, counts.components,
+                              counts.components == 1 ? "" : "s"));
+  lines.push_back(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
+                              counts.min_valence, counts.max_valence, counts.extraordinary,
+                              traits.dual ? "faces" : "vertices", counts.boundary_edges, counts.creases));
+  return lines;
+}
+
+std::string overlap_sentence(const MeshSummary& summary) {
+  return fmt::format(
+      "the shell of {} {} lies within another one, or overlaps it, and is turned the same way: the solid "
+      "includes both, and its volume counts their common part twice; if the shell bounds a cavity, turn its "
+      "faces",
+      traits_of(summary.scheme).owner(), *summary.twice);
+}
+
+}  // namespace snug::command

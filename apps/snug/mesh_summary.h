@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <snug/inspect.h>
+#include <snug/surface.h>
+
+#include "common.h"
+
+namespace snug::command {
+
+/// What is known of a mesh, a broken one too, and of its surface, before any question.
+struct MeshSummary {
+  Scheme scheme;
+  MeshCounts counts;
+  std::vector<Defect> defects;
+  std::optional<Surface> surface;      ///< none if it is refused
+  std::string refusal;                 ///< why
+  std::optional<double> apart;         ///< limit_to_faces()
+  std::optional<std::uint32_t> twice;  ///< overlapping_shell()
+};
+
+/// Errors:    UsageError for curves and for options that do not fit.
+[[nodiscard]] MeshSummary summary_of(const ControlMesh& mesh, const std::string& path,
+                                     const CommonOptions& options);
+/// What it is taken to be, and the counts, as lines for people; a refusal, if there is one.
+[[nodiscard]] std::vector<std::string> lines_of(const MeshSummary& summary, const ControlMesh& mesh,
+                                                const std::string& path, const CommonOptions& options);
+/// A sentence about `twice`, without a full stop.
+[[nodiscard]] std::string overlap_sentence(const MeshSummary& summary);
+
+}  // namespace snug::command
