@@ -205,7 +205,10 @@ void find_in_mesh(const ControlMesh& mesh, const MeshSummary& summary, const Opt
   if (summary.twice) findings.push_back({"overlapping-shell", overlap_sentence(summary), ""});
   if (counts.needles > 0) {
     findings.push_back(
-        {"needles", fmt::format("{} faces are a hundred times as long as wide or more", counts.needles), ""});
+        {"needles",
+         fmt::format("{} a hundred times as long as wide or more",
+                     counts.needles == 1 ? "a face is" : fmt::format("{} faces are", counts.needles)),
+         ""});
   }
   if (counts.max_valence > many_faces) {
     findings.push_back(
@@ -249,13 +252,13 @@ ExitStatus run(const Options& options) {
   const WorkMonitor monitor = stopped_by_interrupts();
   ControlMesh mesh = read_mesh(options.mesh, reading, {.monitor = &monitor});
   if (angle) sharpen_mesh(mesh, options.mesh, *angle, options);
+  Report report("judge", options);
   const MeshSummary summary = summary_of(mesh, options.mesh, options);
   if (!summary.surface) findings.push_back({"refused", summary.refusal, ""});
   find_in_mesh(mesh, summary, options, findings);
   std::vector<Answer> answers;
   if (summary.surface) answers = Judge(options, *summary.surface, findings).run();
 
-  Report report("judge", options);
   report.heads({options.mesh}, {name_of(summary.scheme)});
   if (report.json()) write_json(report.write(), summary, mesh, answers, findings);
   const std::vector<std::string> lines = lines_of(summary, mesh, options.mesh, options);
