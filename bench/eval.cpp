@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   for (const ControlMesh& mesh : {irregular_mesh(faces), irregular_quads(faces)}) {
     const bool loop = mesh.face(FaceId(0u)).size() == 3;
     const Subject subject(mesh, {loop ? Scheme::loop : Scheme::catmark});
-    for (const std::size_t per_face : {16u, 256u}) {
+    for (const std::size_t per_face : {16u, 100u, 256u}) {
       for (const std::size_t corners : {0u, 1u, 3u})
         bench_evaluation(mesh, subject, corners, per_face, options);
     }

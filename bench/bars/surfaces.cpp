@@ -70,15 +70,18 @@ void evaluation_bars(const Options& options, BarTable& table) {
 #ifdef SNUG_BENCH_OPENSUBDIV
   const ControlMesh mesh = irregular_quads(options.size(100'000, 2'000));
   const Subject subject(mesh, {Scheme::catmark});
-  for (const std::size_t per_face : {16u, 256u}) {
+  for (const std::size_t per_face : {16u, 100u, 256u}) {
+    const bool many = per_face == 100;
+    const char* const name =
+        many ? "evaluation, Catmull-Clark, 100 points a face" : "evaluation, Catmull-Clark";
     for (const std::size_t corners : {0u, 1u, 3u}) {
       const std::vector<Times> times = bench_evaluation(mesh, subject, corners, per_face, options);
       const std::string part =
           std::to_string(per_face) + " points, " + std::to_string(corners) + " extraordinary corners";
       for (const char* way : {snug_with_errors, snug_single}) {
-        table.at_least("evaluation, Catmull-Clark",
+        table.at_least(name,
                        way == snug_single ? "Bfr over snug, single precision" : "Bfr over snug, error bounds",
-                       1.5, part, ratio(of_name(times, bfr_points), of_name(times, way)));
+                       many ? 3 : 1.5, part, ratio(of_name(times, bfr_points), of_name(times, way)));
       }
     }
   }

@@ -28,7 +28,7 @@ PieceParameter to_kind(const Patch& patch, TriangleParameter p, double drift) {
 // The lattice of a polynomial piece, and a parameter on it.
 struct OnLattice {
   std::array<kernels::NetPoint, max_basis_count> points;
-  std::array<kernels::LatticePlace, 1> at;
+  kernels::LatticePlace at;
   double largest, error;
 };
 
@@ -55,14 +55,14 @@ void put_on_lattice(const Patch& piece, const PieceParameter& p, OnLattice& out)
   const auto [w, u, v] = p.at;
   // Halves of quads run from (0,0) by (1,0) to (1,1).
   const bool half = !piece.kind->rules().triangular();
-  out.at[0] = {w, half ? u + v : u, v, 0, in_order.data()};
+  out.at = {w, half ? u + v : u, v, in_order.data()};
 }
 
 RelativePoint polynomial_point(const Patch& piece, const PieceParameter& p) {
   OnLattice here;
   put_on_lattice(piece, p, here);
   kernels::NetPoint sum;
-  kernels::sum_values(piece.kind->rules().basis, here.points.data(), here.at, &sum);
+  kernels::sum_values(piece.kind->rules().basis, here.points.data(), here.at, sum);
   return {{sum[0], sum[1], sum[2]}, BasisBounds::value_error(here.largest, here.error, p.off)};
 }
 
@@ -76,7 +76,7 @@ Derivatives polynomial_derivatives(const Patch& piece, const PieceParameter& p) 
   OnLattice here;
   put_on_lattice(piece, p, here);
   kernels::BasisSums sums;
-  kernels::sum_derivatives(piece.kind->rules().basis, here.points.data(), here.at, &sums);
+  kernels::sum_derivatives(piece.kind->rules().basis, here.points.data(), here.at, sums);
   const auto spatial = [](const kernels::NetPoint& sum) { return Vector3{sum[0], sum[1], sum[2]}; };
   const Vector3 along_u = spatial(sums.along_u), along_v = spatial(sums.along_v);
   const bool half = !piece.kind->rules().triangular();

@@ -36,10 +36,21 @@ std::size_t quad_corner(double u, double v) {
   return v == 0 ? (u == 0 ? 0 : 1) : (u == 0 ? 3 : 2);
 }
 
+std::size_t corner_at(bool triangular, TriangleParameter p) {
+  return triangular ? triangle_corner(p.u, p.v) : quad_corner(p.u, p.v);
+}
+
+// Onto a quarter of a piece, which is counted from the piece's own corner 0.
+Descent step_down(bool triangular, TriangleParameter p) {
+  if (triangular) return descend(p);
+  const bool right = p.u >= 0.5, upper = p.v >= 0.5;
+  return {upper ? 3u - right : unsigned{right}, {2 * p.u - right, 2 * p.v - upper}};
+}
+
 }  // namespace
 
 struct LimitEvaluator::Position {
-  double u, v;                     // on `piece`, or on its regular child
+  TriangleParameter at{};          // on `piece`, or on its regular child
   std::uint32_t piece = 0;         // the last one that is kept
   std::uint8_t first = 0;          // corner of the piece, or of its regular child, that its kind calls 0
   bool stopped = false;            // at the depth limit, where the corner stands for all of the piece
@@ -47,6 +58,14 @@ struct LimitEvaluator::Position {
   const std::uint32_t* lattice = nullptr;  // of a regular piece: places in the refined net
   double turned = 1;  // derivative of u and v along the given ones: plus or minus 2^level
   double drift = 0;   // upper bound of what roundings have moved u or v by
+};
+
+struct LimitEvaluator::Batch {
+  static constexpr std::size_t most = 128;
+  std::array<double, most> u, v;
+  std::array<std::uint32_t, most> numbers;  // of the answers
+  std::array<std::uint8_t, most> quarters;  // of the piece, or which has_answer
+  static constexpr std::uint8_t has_answer = 4;
 };
 
 void LimitEvaluator::reset(const Patch& patch) {
@@ -111,10 +130,24 @@ std::uint32_t LimitEvaluator::make_child(std::uint32_t piece, unsigned child) {
   return number;
 }
 
-// Whether the parameter is an extraordinary corner of the piece, for all practical ends.
-bool LimitEvaluator::stop_at_corner(Position& place) const {
+LimitEvaluator::Position LimitEvaluator::start() const {
+  SNUG_EXPECT(!pieces_.empty());
+  Position place;
+  place.first = pieces_[0].first;
+  place.lattice = lattice_;
+  return place;
+}
+
+TriangleParameter LimitEvaluator::on_patch(const Place& at) const {
+  if (triangular_) return checked({at.u, at.v});
+  require_value(at.u >= 0 && at.u <= 1 && at.v >= 0 && at.v <= 1,
+                "a parameter is outside its quad: u and v must be from 0 to 1");
+  return {at.u, at.v};
+}
+
+// Whether a parameter, `corner` of the piece if it is one, is an extraordinary corner for all practical ends.
+bool LimitEvaluator::stop_at_corner(Position& place, std::size_t corner) const {
   const Piece& piece = pieces_[place.piece];
-  std::size_t corner = triangular_ ? triangle_corner(place.u, place.v) : quad_corner(place.u, place.v);
   const bool stop = piece.level >= PiecePath::max_level;
   if (corner == no_corner && !stop) return false;
   const auto of_kind = [&](std::size_t k) { return triangular_ ? (k + 3 - place.first) % 3 : k; };
@@ -129,24 +162,13 @@ bool LimitEvaluator::stop_at_corner(Position& place) const {
   return true;
 }
 
-// One step down, to a regular piece or to one that is kept.
-void LimitEvaluator::descend(Position& place) {
+// Onto a quarter that step_down() named: a regular piece, or one that is kept.
+void LimitEvaluator::enter(Position& place, unsigned quarter) {
   if (pieces_[place.piece].step == nullptr) refine(pieces_[place.piece]);
-  unsigned child = 0;
-  if (triangular_) {
-    const Descent down = snug::descend(TriangleParameter{place.u, place.v});
-    place.u = down.at.u;
-    place.v = down.at.v;
-    place.turned *= down.child == 3 ? -2 : 2;
-    place.drift = 2 * place.drift + (down.child == 3 ? unit_roundoff : 0);
-    child = down.child == 3 ? 3 : (down.child + 3 - place.first) % 3;
-  } else {
-    const bool right = place.u >= 0.5, upper = place.v >= 0.5;
-    place.u = 2 * place.u - right;
-    place.v = 2 * place.v - upper;
-    place.turned *= 2;
-    child = upper ? 3 - right : right;
-  }
+  const bool turns = triangular_ && quarter == 3;
+  place.turned *= turns ? -2 : 2;
+  place.drift = 2 * place.drift + (turns ? unit_roundoff : 0);
+  const unsigned child = triangular_ && !turns ? (quarter + 3 - place.first) % 3 : quarter;
   const Piece& piece = pieces_[place.piece];
   const KindStep::Piece& step = piece.step->pieces[child];
   place.first = static_cast<std::uint8_t>((step.first + place.first) % 3);
@@ -156,21 +178,6 @@ void LimitEvaluator::descend(Position& place) {
     const std::uint32_t kept = piece.children[child];
     place.piece = kept != 0 ? kept : make_child(place.piece, child);
   }
-}
-
-void LimitEvaluator::locate(Position& place) {
-  SNUG_EXPECT(!pieces_.empty());
-  if (triangular_) {
-    const TriangleParameter at = checked({place.u, place.v});
-    place.u = at.u;
-    place.v = at.v;
-  } else {
-    require_value(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1,
-                  "a parameter is outside its quad: u and v must be from 0 to 1");
-  }
-  place.first = pieces_[0].first;
-  place.lattice = lattice_;
-  while (place.lattice == nullptr && !stop_at_corner(place)) descend(place);
 }
 
 RelativePoint LimitEvaluator::corner_point(const Position& place) const {
@@ -208,49 +215,74 @@ double LimitEvaluator::regular_error(const Position& place) const {
   return BasisBounds::value_error(piece.refined.largest, piece.refined.error, 4 * place.drift);
 }
 
-void LimitEvaluator::put_on_lattice(const Position& place, kernels::LatticePlace& out) const {
-  const double u = place.u, v = place.v, w = 1 - u - v;
-  // In the kind's order of corners.
-  out.w = place.first == 0 ? w : place.first == 1 ? u : v;
-  out.u = place.first == 0 ? u : place.first == 1 ? v : w;
-  out.v = place.first == 0 ? v : place.first == 1 ? w : u;
-  out.net = pieces_[place.piece].refined.first;
-  out.lattice = place.lattice;
+// Of the parameters from `begin` to `end` in room[side], all of one piece. Parameters of its quarters go to the other side,
+// quarter by quarter.
+void LimitEvaluator::answer(const Position& all, std::array<Batch, 2>& room, std::size_t side,
+                            std::size_t begin, std::size_t end, std::span<BoundedPoint> out) {
+  Batch &here = room[side], &below = room[1 - side];
+  if (all.lattice != nullptr) {
+    const kernels::LatticePoints piece{
+        basis_,      all.first, points_.data() + pieces_[all.piece].refined.first,
+        all.lattice, origin_,   regular_error(all)};
+    kernels::points_on_lattice(piece, {&here.u[begin], &here.v[begin], &here.numbers[begin], end - begin},
+                               out.data());
+    return;
+  }
+  const bool stop = pieces_[all.piece].level >= PiecePath::max_level;
+  std::array<std::size_t, Batch::has_answer + 1> counts{};
+  for (std::size_t i = begin; i < end; ++i) {
+    const TriangleParameter at{here.u[i], here.v[i]};
+    const std::size_t corner = corner_at(triangular_, at);
+    if (Position place = all; (stop || corner != no_corner) && stop_at_corner(place, corner)) {
+      out[here.numbers[i]] = corner_point(place).from(origin_);
+      here.quarters[i] = Batch::has_answer;
+    } else {
+      const Descent down = step_down(triangular_, at);
+      here.u[i] = down.at.u;
+      here.v[i] = down.at.v;
+      here.quarters[i] = static_cast<std::uint8_t>(down.child);
+    }
+    ++counts[here.quarters[i]];
+  }
+  std::array<std::size_t, Batch::has_answer + 1> next{begin};
+  for (std::size_t q = 0; q < Batch::has_answer; ++q) next[q + 1] = next[q] + counts[q];
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t to = next[here.quarters[i]]++;
+    below.u[to] = here.u[i];
+    below.v[to] = here.v[i];
+    below.numbers[to] = here.numbers[i];
+  }
+  for (std::uint8_t q = 0; q < Batch::has_answer; ++q) {
+    if (counts[q] == 0) continue;
+    Position place = all;
+    enter(place, q);
+    answer(place, room, 1 - side, next[q] - counts[q], next[q], out);
+  }
 }
 
 void LimitEvaluator::points(std::span<const Place> at, std::span<BoundedPoint> out) {
   SNUG_EXPECT(at.size() == out.size());
-  constexpr std::size_t most = 64;
-  std::array<kernels::LatticePlace, most> found;
-  std::array<NetPoint, most> sums;
-  std::array<std::uint32_t, most> which;
-  for (std::size_t begin = 0; begin < at.size(); begin += most) {
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < std::min(at.size(), begin + most); ++i) {
-      Position place{at[i].u, at[i].v};
-      locate(place);
-      if (place.lattice == nullptr) {
-        out[i] = corner_point(place).from(origin_);
-        continue;
-      }
-      out[i].error = regular_error(place);
-      which[count] = static_cast<std::uint32_t>(i);
-      put_on_lattice(place, found[count++]);
+  std::array<Batch, 2> room;
+  for (std::size_t begin = 0; begin < at.size(); begin += Batch::most) {
+    const std::size_t count = std::min(at.size() - begin, Batch::most);
+    for (std::size_t i = 0; i < count; ++i) {
+      const TriangleParameter there = on_patch(at[begin + i]);
+      room[0].u[i] = there.u;
+      room[0].v[i] = there.v;
+      room[0].numbers[i] = static_cast<std::uint32_t>(i);
     }
-    kernels::sum_values(basis_, points_.data(), {found.data(), count}, sums.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      BoundedPoint& point = out[which[k]];
-      point = RelativePoint{spatial(sums[k]), point.error}.from(origin_);
-    }
+    answer(start(), room, 0, 0, count, out.subspan(begin, count));
   }
 }
 
 LimitFrame LimitEvaluator::regular_frame(const Position& place) const {
   const Net& net = pieces_[place.piece].refined;
-  std::array<kernels::LatticePlace, 1> at;
-  put_on_lattice(place, at[0]);
+  const auto [u, v] = place.at;
+  const std::array<double, 5> turned{1 - u - v, u, v, 1 - u - v, u};
+  const double* const of_kind = turned.data() + place.first;
   kernels::BasisSums sums;
-  kernels::sum_derivatives(basis_, points_.data(), at, &sums);
+  kernels::sum_derivatives(basis_, points_.data() + net.first,
+                           {of_kind[0], of_kind[1], of_kind[2], place.lattice}, sums);
   LimitFrame frame;
   frame.point = {spatial(sums.value), regular_error(place)};
   std::array<Vector3, 2> along{spatial(sums.along_u), spatial(sums.along_v)};
@@ -270,8 +302,13 @@ LimitFrame LimitEvaluator::regular_frame(const Position& place) const {
 }
 
 LimitFrame LimitEvaluator::frame(const Place& at) {
-  Position place{at.u, at.v};
-  locate(place);
+  Position place = start();
+  place.at = on_patch(at);
+  while (place.lattice == nullptr && !stop_at_corner(place, corner_at(triangular_, place.at))) {
+    const Descent down = step_down(triangular_, place.at);
+    place.at = down.at;
+    enter(place, down.child);
+  }
   return place.lattice != nullptr ? regular_frame(place) : corner_frame(place);
 }
 

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 
+#include <snug/geometry/rounding.h>
 #include <snug/patch/net_kernels.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {
+
+#include <snug/scheme/basis_functions-inl.h>
 
 constexpr hn::CappedTag<double, 4> d4;
 using V = hn::Vec<decltype(d4)>;
@@ -130,51 +133,173 @@ HWY_INLINE void other_derivatives(const LatticePlace& at, const NetPoint* points
 }
 
 template <RegularBasis basis>
-void sum_all(const NetPoint* points, std::span<const LatticePlace> all, NetPoint* out) {
-  for (const LatticePlace& at : all) {
-    if constexpr (is_tensor(basis)) {
-      tensor_value<tensor_degree(basis)>(at, points + at.net, *out++);
-    } else {
-      other_value<basis>(at, points + at.net, *out++);
-    }
+HWY_INLINE void sums_at(const LatticePlace& at, const NetPoint* points, NetPoint& out) {
+  if constexpr (is_tensor(basis)) {
+    tensor_value<tensor_degree(basis)>(at, points, out);
+  } else {
+    other_value<basis>(at, points, out);
   }
 }
 
 template <RegularBasis basis>
-void sum_all(const NetPoint* points, std::span<const LatticePlace> all, BasisSums* out) {
-  for (const LatticePlace& at : all) {
-    if constexpr (is_tensor(basis)) {
-      tensor_derivatives<tensor_degree(basis)>(at, points + at.net, *out++);
-    } else {
-      other_derivatives<basis>(at, points + at.net, *out++);
+HWY_INLINE void sums_at(const LatticePlace& at, const NetPoint* points, BasisSums& out) {
+  if constexpr (is_tensor(basis)) {
+    tensor_derivatives<tensor_degree(basis)>(at, points, out);
+  } else {
+    other_derivatives<basis>(at, points, out);
+  }
+}
+
+// A number of each of several points, a lane a point.
+constexpr hn::CappedTag<double, 8> d8;
+constexpr std::size_t most_lanes = hn::MaxLanes(d8);
+struct Number {
+  hn::Vec<decltype(d8)> lanes;
+  Number() = default;
+  HWY_INLINE Number(hn::Vec<decltype(d8)> of_lanes) : lanes(of_lanes) {}
+  HWY_INLINE Number(double of_all) : lanes(hn::Set(d8, of_all)) {}
+  friend HWY_INLINE Number operator+(Number a, Number b) { return hn::Add(a.lanes, b.lanes); }
+  friend HWY_INLINE Number operator-(Number a, Number b) { return hn::Sub(a.lanes, b.lanes); }
+  friend HWY_INLINE Number operator-(Number a) { return hn::Neg(a.lanes); }
+  friend HWY_INLINE Number operator*(Number a, Number b) { return hn::Mul(a.lanes, b.lanes); }
+};
+struct Numbers {
+  Number x, y, z;
+};
+HWY_INLINE Numbers scaled(Number weight, const Numbers& p) {
+  return {weight * p.x, weight * p.y, weight * p.z};
+}
+HWY_INLINE void add_scaled(Number weight, const Numbers& p, Numbers& sum) {
+  sum = {sum.x + weight * p.x, sum.y + weight * p.y, sum.z + weight * p.z};
+}
+
+// The operations of tensor_value() and other_value(), in their order, for parameters in the kind's order of corners.
+template <RegularBasis basis>
+HWY_INLINE Numbers lattice_sums(const LatticePoints& piece, Number w, Number u, Number v) {
+  const auto point = [&](std::size_t i) {
+    const NetPoint& p = piece.points[piece.lattice[i]];
+    return Numbers{p[0], p[1], p[2]};
+  };
+  Numbers value;
+  if constexpr (is_tensor(basis)) {
+    constexpr std::size_t degree = tensor_degree(basis);
+    const Splines<degree, Number> x = splines<degree>(u), y = splines<degree>(v);
+    for (std::size_t j = 0, place = 0; j <= degree; ++j) {
+      Numbers across = scaled(x.value[0], point(place++));
+      for (std::size_t i = 1; i <= degree; ++i) add_scaled(x.value[i], point(place++), across);
+      if (j == 0) {
+        value = scaled(y.value[0], across);
+      } else {
+        add_scaled(y.value[j], across, value);
+      }
+    }
+  } else {
+    BasisFunctionsOf<Number> functions;
+    basis_functions<basis, false>(w, u, v, functions);
+    value = scaled(functions.value[0], point(0));
+    for (std::size_t i = 1; i < basis_count(basis); ++i) add_scaled(functions.value[i], point(i), value);
+  }
+  return value;
+}
+
+// As many points as there are lanes.
+template <RegularBasis basis>
+HWY_INLINE void points_in_lanes(const LatticePoints& piece, const double* first_u, const double* first_v,
+                                BoundedPoint* out) {
+  const Number u = hn::LoadU(d8, first_u), v = hn::LoadU(d8, first_v);
+  const std::array<Number, 5> turned{1 - u - v, u, v, 1 - u - v, u};
+  const Number* const at = turned.data() + piece.first;
+  const Numbers sum = lattice_sums<basis>(piece, at[0], at[1], at[2]);
+  const Number x = piece.origin.x + sum.x, y = piece.origin.y + sum.y, z = piece.origin.z + sum.z;
+  const Number largest = hn::Max(hn::Abs(x.lanes), hn::Max(hn::Abs(y.lanes), hn::Abs(z.lanes)));
+  const Number error = piece.error + unit_roundoff * largest;
+  static_assert(sizeof(BoundedPoint) == 4 * sizeof(double));
+  hn::StoreInterleaved4(x.lanes, y.lanes, z.lanes, error.lanes, d8, &out->position.x);
+}
+
+// A point alone, which takes less than half of what all lanes do.
+template <RegularBasis basis>
+HWY_INLINE void point_alone(const LatticePoints& piece, double u, double v, BoundedPoint& out) {
+  const std::array<double, 5> turned{1 - u - v, u, v, 1 - u - v, u};
+  const double* const at = turned.data() + piece.first;
+  NetPoint sum;
+  sums_at<basis>({at[0], at[1], at[2], piece.lattice}, piece.points, sum);
+  const Point3 point = piece.origin + Vector3{sum[0], sum[1], sum[2]};
+  out = {point, piece.error + unit_roundoff * max_abs(point - Point3{})};
+}
+
+template <RegularBasis basis>
+void lattice_points(const LatticePoints& piece, const LatticeParameters& at, BoundedPoint* out) {
+  // On which of its four triangles a parameter lies chooses the functions of the Zwart-Powell element.
+  constexpr std::size_t at_once = basis == RegularBasis::zwart_powell ? 1 : most_lanes;
+  for (std::size_t begin = 0; begin < at.count; begin += at_once) {
+    const double *u = at.u + begin, *v = at.v + begin;
+    const std::size_t here = std::min(at_once, at.count - begin);
+    if (here <= 2) {
+      for (std::size_t i = 0; i < here; ++i)
+        point_alone<basis>(piece, u[i], v[i], out[at.numbers[begin + i]]);
+      continue;
+    }
+    if constexpr (at_once > 1) {
+      std::array<double, most_lanes> last_u{}, last_v{};
+      if (here < most_lanes) {
+        u = std::copy_n(u, here, last_u.begin()) - here;
+        v = std::copy_n(v, here, last_v.begin()) - here;
+      }
+      std::array<BoundedPoint, most_lanes> points;
+      points_in_lanes<basis>(piece, u, v, points.data());
+      for (std::size_t i = 0; i < here; ++i) out[at.numbers[begin + i]] = points[i];
     }
   }
 }
 
-template <class Out>
-void sum_with(RegularBasis basis, const NetPoint* points, std::span<const LatticePlace> at, Out* out) {
+// visit() with the basis as a constant.
+template <class Visit>
+HWY_INLINE void with_basis(RegularBasis basis, const Visit& visit) {
+  using enum RegularBasis;
   switch (basis) {
-    case RegularBasis::linear:
-      return sum_all<RegularBasis::linear>(points, at, out);
-    case RegularBasis::box_spline:
-      return sum_all<RegularBasis::box_spline>(points, at, out);
-    case RegularBasis::bilinear:
-      return sum_all<RegularBasis::bilinear>(points, at, out);
-    case RegularBasis::biquadratic:
-      return sum_all<RegularBasis::biquadratic>(points, at, out);
-    case RegularBasis::bicubic:
-      return sum_all<RegularBasis::bicubic>(points, at, out);
-    case RegularBasis::zwart_powell:
-      return sum_all<RegularBasis::zwart_powell>(points, at, out);
+    case linear:
+      return visit.template operator()<linear>();
+    case box_spline:
+      return visit.template operator()<box_spline>();
+    case bilinear:
+      return visit.template operator()<bilinear>();
+    case biquadratic:
+      return visit.template operator()<biquadratic>();
+    case bicubic:
+      return visit.template operator()<bicubic>();
+    case zwart_powell:
+      return visit.template operator()<zwart_powell>();
   }
 }
 
-void SumValues(RegularBasis basis, const NetPoint* points, std::span<const LatticePlace> at, NetPoint* out) {
-  sum_with(basis, points, at, out);
+void SumValues(RegularBasis basis, const NetPoint* points, const LatticePlace& at, NetPoint& out) {
+  with_basis(basis, [&]<RegularBasis b>() { sums_at<b>(at, points, out); });
 }
-void SumDerivatives(RegularBasis basis, const NetPoint* points, std::span<const LatticePlace> at,
-                    BasisSums* out) {
-  sum_with(basis, points, at, out);
+void SumDerivatives(RegularBasis basis, const NetPoint* points, const LatticePlace& at, BasisSums& out) {
+  with_basis(basis, [&]<RegularBasis b>() { sums_at<b>(at, points, out); });
+}
+void PointsOnLattice(const LatticePoints& piece, const LatticeParameters& at, BoundedPoint* out) {
+  with_basis(piece.basis, [&]<RegularBasis b>() { lattice_points<b>(piece, at, out); });
+}
+
+double RoundPoints(std::span<const BoundedPoint> points, const std::size_t* numbers, float* out) {
+  const hn::Rebind<float, decltype(d4)> f4;
+  Sum largest = load(NetPoint{});
+  for (const BoundedPoint& point : points) {
+    float rounded[4];
+    for (std::size_t k = 0; k < parts; ++k) {
+      const V exact = hn::LoadU(d4, &point.position.x + k * lanes);
+      const auto near = hn::DemoteTo(f4, exact);
+      hn::StoreU(near, f4, rounded + k * lanes);
+      const V off = hn::Abs(hn::Sub(hn::PromoteTo(d4, near), exact));
+      largest.part[k] = hn::Max(largest.part[k], hn::Add(off, hn::Set(d4, point.error)));
+    }
+    std::copy_n(rounded, 3, out + 3 * *numbers++);
+  }
+  NetPoint most;
+  store(largest, most);
+  return enlarged(std::max({most[0], most[1], most[2]}));
 }
 
 }  // namespace
@@ -187,18 +312,27 @@ namespace snug::kernels {
 HWY_EXPORT(RefineNet);
 HWY_EXPORT(SumValues);
 HWY_EXPORT(SumDerivatives);
+HWY_EXPORT(PointsOnLattice);
+HWY_EXPORT(RoundPoints);
 
 double refine_net(const Stencils& stencils, const NetPoint* points, NetPoint* out) {
   return HWY_DYNAMIC_DISPATCH(RefineNet)(stencils, points, out);
 }
 
-void sum_values(RegularBasis basis, const NetPoint* points, std::span<const LatticePlace> at, NetPoint* out) {
+void sum_values(RegularBasis basis, const NetPoint* points, const LatticePlace& at, NetPoint& out) {
   HWY_DYNAMIC_DISPATCH(SumValues)(basis, points, at, out);
 }
 
-void sum_derivatives(RegularBasis basis, const NetPoint* points, std::span<const LatticePlace> at,
-                     BasisSums* out) {
+void sum_derivatives(RegularBasis basis, const NetPoint* points, const LatticePlace& at, BasisSums& out) {
   HWY_DYNAMIC_DISPATCH(SumDerivatives)(basis, points, at, out);
+}
+
+void points_on_lattice(const LatticePoints& piece, const LatticeParameters& at, BoundedPoint* out) {
+  HWY_DYNAMIC_DISPATCH(PointsOnLattice)(piece, at, out);
+}
+
+double round_points(std::span<const BoundedPoint> points, const std::size_t* numbers, float* out) {
+  return HWY_DYNAMIC_DISPATCH(RoundPoints)(points, numbers, out);
 }
 
 }  // namespace snug::kernels

@@ -78,13 +78,13 @@ void add_products(RegularBasis basis, double u, double v, double weight, Forms& 
   constexpr std::size_t lanes = 4;
   std::array<std::uint32_t, max_basis_count> lattice;
   for (std::size_t i = 0; i < count; ++i) lattice[i] = static_cast<std::uint32_t>(i);
-  const kernels::LatticePlace at{1 - u - v, u, v, 0, lattice.data()};
+  const kernels::LatticePlace at{1 - u - v, u, v, lattice.data()};
   std::array<double, max_basis_count> by_u{}, by_v{};
   for (std::size_t first = 0; first < count; first += lanes) {
     std::array<kernels::NetPoint, max_basis_count> units{};
     for (std::size_t k = 0; k < lanes && first + k < count; ++k) units[first + k][k] = 1;
     kernels::BasisSums sums;
-    kernels::sum_derivatives(basis, units.data(), std::span(&at, 1), &sums);
+    kernels::sum_derivatives(basis, units.data(), at, sums);
     for (std::size_t k = 0; k < lanes && first + k < count; ++k) {
       by_u[first + k] = sums.along_u[k];
       by_v[first + k] = sums.along_v[k];

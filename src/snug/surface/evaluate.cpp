@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/patch/net_kernels.h>
 #include <snug/surface/curve_set.h>
 #include <snug/surface/unscale.h>
 #include <support/direction.h>
@@ -60,27 +60,21 @@ std::vector<std::size_t> grouped_by_patch(const LimitSurface& surface, std::span
   return order;
 }
 
-// Writes a position in single precision; returns its error.
-double write_rounded(const BoundedPoint& point, float* out) {
-  double rounding = 0;
-  bool finite = true;
-  for (std::size_t a = 0; a < 3; ++a) {
-    out[a] = static_cast<float>(point.position[a]);
-    finite &= std::fabs(out[a]) <= std::numeric_limits<float>::max();
-    rounding = std::max(rounding, std::fabs(static_cast<double>(out[a]) - point.position[a]));
-  }
-  if (!finite) {
+// Writes positions in single precision; returns the largest error.
+double write_rounded(std::span<const BoundedPoint> points, const std::size_t* numbers, float* out) {
+  const double error = kernels::round_points(points, numbers, out);
+  if (!(error < INFINITY)) {
     throw InputError(InputProblem::unrepresentable,
                      "a result does not fit a float: the coordinates are too large; scale the mesh down");
   }
-  return enlarged(point.error + rounding);
+  return error;
 }
 
 // A thread's evaluator, with some points of one face, or quad, and their numbers.
 struct Worker {
   explicit Worker(const LimitSurface& surface) : evaluator(surface) {}
 
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most = 128;
   SurfaceEvaluator evaluator;
   std::span<const Place> places;
   std::array<std::size_t, most> numbers;
@@ -117,23 +111,19 @@ void evaluate_all(const LimitSurface& surface, std::span<const Place> at, int th
 double write_positions(Worker& worker, const FloatPoints& out) {
   const std::span<BoundedPoint> points = std::span(worker.points).first(worker.places.size());
   worker.evaluator.positions(worker.places, points);
-  double largest = 0;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    largest = std::max(largest, write_rounded(points[k], out.positions.data() + 3 * worker.numbers[k]));
-  }
-  return largest;
+  return write_rounded(points, worker.numbers.data(), out.positions.data());
 }
 
 double write_with_normals(Worker& worker, const FloatPoints& out) {
-  double largest = 0;
-  for (std::size_t k = 0; k < worker.places.size(); ++k) {
+  const std::span<BoundedPoint> points = std::span(worker.points).first(worker.places.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
     const std::size_t first = 3 * worker.numbers[k];
     const SurfacePoint point = worker.evaluator(worker.places[k]);
-    largest = std::max(largest, write_rounded({point.point, point.error}, out.positions.data() + first));
+    points[k] = {point.point, point.error};
     const Vector3 normal = point.normal.value_or(Vector3{});
     for (std::size_t a = 0; a < 3; ++a) out.normals[first + a] = static_cast<float>(normal[a]);
   }
-  return largest;
+  return write_rounded(points, worker.numbers.data(), out.positions.data());
 }
 
 }  // namespace
@@ -160,7 +150,8 @@ void SurfaceEvaluator::positions(std::span<const Place> at, std::span<BoundedPoi
   if (at.empty()) return;
   turn_to(at.front());
   evaluator_.points(at, out);
-  for (BoundedPoint& point : out) point = unscaled(point, back_);
+  const PowerOfTwo back = back_;  // answers cannot overlap it
+  for (BoundedPoint& point : out) point = unscaled(point, back);
 }
 
 SurfacePoint evaluate(const LimitSurface& surface, const Place& at) { return SurfaceEvaluator(surface)(at); }
