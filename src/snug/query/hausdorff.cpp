@@ -42,6 +42,22 @@ constexpr unsigned max_depth = 120;
 constexpr std::size_t chunk_work = 4096;
 constexpr std::size_t chunk_pieces = 32;
 constexpr std::size_t chunks_at_once = 64;
+// Blocks of feet after which the farthest corner of them is compared with a threshold.
+constexpr std::size_t blocks_at_once = 4;
+
+// Raises the lower end to what a point proves that lies at a parameter of a piece, with a foot near it; makes the foot nearer where
+// that is found.
+void raise_lower_end(const BoundedPoint& point, std::pair<std::uint32_t, TriangleParameter> at,
+                     const PieceSet& other, const HausdorffOptions& options, QuadraticFoot& foot,
+                     Farthest& found) {
+  const double lower =
+      certain_distance(other, point.position, options.precision / 16, foot) - spatial_error(point.error);
+  if (!(lower > found.lower)) return;
+  found.lower = lower;
+  found.from = point;
+  found.to = foot;
+  found.at = at;
+}
 
 class Chunk {
  public:
@@ -156,14 +172,7 @@ class Chunk {
     }
     QuadraticFoot foot = foot_on(other_, part.feet[k].piece, point.position);
     const double before = foot.distance;
-    const double lower =
-        certain_distance(other_, point.position, options_.precision / 16, foot) - spatial_error(point.error);
-    if (lower > found_.lower) {
-      found_.lower = lower;
-      found_.from = point;
-      found_.to = foot;
-      found_.at = {part.piece, part.at[k]};
-    }
+    raise_lower_end(point, {part.piece, part.at[k]}, other_, options_, foot, found_);
     if (foot.distance < before) {
       part.feet[k] = foot_on(other_, foot.piece, quadratic_.corners[k]);
       part.tried = static_cast<std::uint8_t>(part.tried & ~(1u << k));
@@ -281,37 +290,49 @@ class Chunk {
 // The feet of the corners of pieces; corners at the same point are asked once.
 class CornerFeet {
  public:
-  CornerFeet(const PieceSet& set, std::span<const std::uint32_t> pieces, const PieceSet& other, int threads,
-             const WorkMonitor& monitor) {
+  CornerFeet(const PieceSet& set, std::span<const std::uint32_t> pieces) {
     std::size_t size = 16;
     while (size < 6 * pieces.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
-    std::vector<Point3> points;
     names_.resize(3 * pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         const Point3& p = set[pieces[i]].corners[k];
         std::size_t slot = hash(p) & (size - 1);
-        while (table[slot] != UINT32_MAX && !(points[table[slot]] == p)) slot = (slot + 1) & (size - 1);
+        while (table[slot] != UINT32_MAX && !(points_[table[slot]] == p)) slot = (slot + 1) & (size - 1);
         if (table[slot] == UINT32_MAX) {
-          table[slot] = static_cast<std::uint32_t>(points.size());
-          points.push_back(p);
+          table[slot] = static_cast<std::uint32_t>(points_.size());
+          points_.push_back(p);
+          corners_.push_back(static_cast<std::uint32_t>(3 * i + k));
         }
         names_[3 * i + k] = table[slot];
       }
     }
-    feet_.resize(points.size());
-    // Blocks of a fixed length, so that hints depend on the input alone.
+    feet_.reserve(points_.size());
+  }
+
+  [[nodiscard]] bool all_found() const { return feet_.size() == points_.size(); }
+  // Finds at most so many blocks of feet, of a fixed length so that hints depend on the input alone. Which corner of which of the
+  // pieces is farthest among these?
+  std::pair<std::size_t, std::size_t> find(std::size_t blocks, const PieceSet& other, int threads,
+                                           const WorkMonitor& monitor) {
     constexpr std::size_t block = 256;
-    parallel_for((points.size() + block - 1) / block, threads, [&](std::size_t begin, std::size_t end) {
+    const std::size_t first = feet_.size(), here = std::min(points_.size() - first, blocks * block);
+    feet_.resize(first + here);
+    parallel_for((here + block - 1) / block, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         monitor.checkpoint();
         QuadraticFoot hint;
-        for (std::size_t i = b * block; i < std::min(points.size(), (b + 1) * block); ++i) {
-          hint = feet_[i] = nearest_foot(other, points[i], hint);
+        for (std::size_t i = first + b * block; i < first + std::min(here, (b + 1) * block); ++i) {
+          hint = feet_[i] = nearest_foot(other, points_[i], hint);
         }
       }
     });
+    const auto farthest = std::max_element(
+        feet_.begin() + static_cast<std::ptrdiff_t>(first), feet_.end(),
+        [](const QuadraticFoot& x, const QuadraticFoot& y) { return x.distance < y.distance; });
+    const std::uint32_t corner = corners_[static_cast<std::size_t>(farthest - feet_.begin())];
+    return {corner / 3, corner % 3};
   }
 
   [[nodiscard]] const QuadraticFoot& operator()(std::size_t i, std::size_t corner) const {
@@ -328,9 +349,31 @@ class CornerFeet {
     return h;
   }
 
-  std::vector<std::uint32_t> names_;
+  std::vector<std::uint32_t> names_;  // of the points, three a piece
+  std::vector<Point3> points_;
+  std::vector<std::uint32_t> corners_;  // of each point one
   std::vector<QuadraticFoot> feet_;
 };
+
+// Is a distance greater than the threshold, in mesh units too?
+bool is_beyond(double lower, const HausdorffOptions& options) {
+  return options.threshold && lower > (1 + 16 * unit_roundoff) * *options.threshold;
+}
+
+// All of some pieces, however far: no point of them is farther from the other set than from one point of that.
+double farthest_from_a_point(const PieceSet& set, std::span<const std::uint32_t> pieces,
+                             const PieceSet& other) {
+  double most = 0;
+  for (const std::uint32_t piece : pieces) {
+    const QuadraticTriangle& p = set[piece];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const Point3& of_net : {p.corners[k], p.middles[k]}) {
+        most = std::max(most, distance(of_net, other[0].corners[0]) + p.error);
+      }
+    }
+  }
+  return enlarged(most + other[0].error) + distance_rounding;
+}
 
 void merge(Farthest& all, const Farthest& part) {
   all.compared += part.compared;
@@ -348,7 +391,20 @@ void merge(Farthest& all, const Farthest& part) {
 std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32_t> pieces,
                                 const PieceSet& other, const HausdorffOptions& options, bool last,
                                 Farthest& farthest, const WorkMonitor& monitor) {
-  const CornerFeet corners(set, pieces, other, options.threads, monitor);
+  CornerFeet corners(set, pieces);
+  const auto end_beyond_threshold = [&] {
+    farthest.upper = std::max(farthest.upper, farthest_from_a_point(set, pieces, other));
+    return std::vector<Unresolved>{};
+  };
+  while (!corners.all_found()) {
+    if (is_beyond(farthest.lower, options)) return end_beyond_threshold();
+    const auto [i, k] = corners.find(blocks_at_once, other, options.threads, monitor);
+    if (options.make_side_test || !is_beyond(corners(i, k).distance, options)) continue;
+    const TriangleParameter at{k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+    const BoundedPoint point = set.point(pieces[i], at);
+    QuadraticFoot foot = foot_on(other, corners(i, k).piece, point.position);
+    raise_lower_end(point, {pieces[i], at}, other, options, foot, farthest);
+  }
   const auto first_part = [&](std::size_t i) {
     Part part{.piece = pieces[i], .at = {TriangleParameter{0, 0}, {1, 0}, {0, 1}}, .feet = {}};
     for (std::size_t k = 0; k < 3; ++k) part.feet[k] = corners(i, k);
@@ -370,6 +426,7 @@ std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32
   // With the first ones the lower end is not known yet.
   std::size_t chunks = 4;
   while (next < order.size() || !left.empty()) {
+    if (is_beyond(farthest.lower, options)) return end_beyond_threshold();
     monitor.report(static_cast<double>(next) / static_cast<double>(order.size()));
     std::vector<std::vector<Part>> stacks = std::exchange(left, {});
     while (stacks.size() < chunks && next < order.size()) {
