@@ -126,6 +126,51 @@ struct Seen {
   }
 };
 
+HWY_INLINE V sum_of(const Vector& v) { return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
+
+// Whether a part of a ray comes as near to the plane of a triangle's corners as its quadratic bends away from it: what begins above
+// a surface and leaves it does not, though it is within the box.
+HWY_INLINE Mask reaches_plane(const Seen& seen, V near, V from, V to) {
+  const Tag d;
+  const Vector* const p = seen.p;
+  const Vector a = sub(p[1], p[0]), b = sub(p[2], p[0]), normal = cross(a, b);
+  V low = hn::Zero(d), high = low;
+  for (std::size_t k = 3; k < 6; ++k) {
+    const V height = dot(normal, sub(p[k], p[0]));
+    low = hn::Min(low, height);
+    high = hn::Max(high, height);
+  }
+  const V own = dot(normal, p[0]);
+  const V first = hn::Sub(hn::Mul(normal.z, from), own), last = hn::Sub(hn::Mul(normal.z, to), own);
+  // A needle's normal is as rounded as its sides are long.
+  const V rounding = hn::Mul(hn::Mul(hn::Mul(hn::Set(d, 0x1p-20F), sum_of(a)), sum_of(b)),
+                             hn::Add(sum_of(p[0]), hn::Add(hn::Abs(from), hn::Abs(to))));
+  const V least = hn::Add(hn::Add(hn::Mul(sum_of(normal), near), rounding), hn::Set(d, 1e-30F));
+  return hn::Not(hn::Or(hn::Gt(hn::Sub(hn::Min(first, last), high), least),
+                        hn::Gt(hn::Sub(low, hn::Max(first, last)), least)));
+}
+
+// Whether it passes between the lines along the triangle's sides, as it sees them, that its Bezier points lie between.
+HWY_INLINE Mask passes_between_sides(const Seen& seen, V near) {
+  const Tag d;
+  const Vector* const p = seen.p;
+  auto outside = hn::Lt(near, hn::Zero(d));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const V x = hn::Sub(p[next].y, p[k].y), y = hn::Sub(p[k].x, p[next].x);
+    const auto height = [&](std::size_t i) { return hn::Add(hn::Mul(x, p[i].x), hn::Mul(y, p[i].y)); };
+    V low = height(k), high = low;
+    for (const std::size_t i : {(k + 2) % 3, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
+      const V other = height(i);
+      low = hn::Min(low, other);
+      high = hn::Max(high, other);
+    }
+    const V least = hn::Add(hn::Mul(hn::Add(hn::Abs(x), hn::Abs(y)), near), hn::Set(d, 1e-30F));
+    outside = hn::Or(outside, hn::Gt(hn::Max(low, hn::Neg(high)), least));
+  }
+  return hn::Not(outside);
+}
+
 HWY_INLINE Seen seen_block(const CasterBlock& block, const CasterRay& ray, std::size_t at) {
   const Tag d;
   const auto point = [&](std::size_t k) {
@@ -193,6 +238,7 @@ std::uint32_t near_pieces(const CasterBlock& block, const CasterRay& ray, float 
 }
 
 // The first place of a block, or none.
+template <CasterQuery query>
 HWY_INLINE CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, float from, float to) {
   const Tag d;
   CasterHit hit;
@@ -200,9 +246,16 @@ HWY_INLINE CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, f
   for (std::size_t at = 0; at < caster_width; at += hn::Lanes(d)) {
     const Seen seen = seen_block(block, ray, at);
     const V near = hn::Set(d, block.error + ray.rounding);
-    const auto candidates = seen.within(near, hn::Set(d, from), hn::Set(d, hit.t));
-    const std::uint32_t taken = bits(d, candidates) & block.taken >> at;
+    auto candidates = seen.within(near, hn::Set(d, from), hn::Set(d, hit.t));
+    std::uint32_t taken = bits(d, candidates) & block.taken >> at;
     if (taken == 0) continue;
+    // Most triangles that a shadow's ray is near to are those that it begins on.
+    if constexpr (query == CasterQuery::any) {
+      candidates = hn::And(candidates, reaches_plane(seen, near, hn::Set(d, from), hn::Set(d, hit.t)));
+      if ((taken &= bits(d, candidates)) == 0) continue;
+    }
+    candidates = hn::And(candidates, passes_between_sides(seen, near));
+    if ((taken &= bits(d, candidates)) == 0) continue;
     const Found found = first_hits(seen, candidates, near, hn::Set(d, from), hn::Set(d, hit.t));
     HWY_ALIGN float t[caster_width], s[caster_width], r[caster_width];
     hn::Store(found.t, d, t);
@@ -216,8 +269,9 @@ HWY_INLINE CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, f
   return hit;
 }
 
-CasterHit walk(const CasterNode* nodes, const CasterBlock* blocks, const CasterRay& ray, float from, float to,
-               CasterQuery query) {
+template <CasterQuery query>
+HWY_INLINE CasterHit walk_for(const CasterNode* nodes, const CasterBlock* blocks, const CasterRay& ray,
+                              float from, float to) {
   CasterHit best;
   best.t = to;
   OpenNodes open;
@@ -233,13 +287,19 @@ CasterHit walk(const CasterNode* nodes, const CasterBlock* blocks, const CasterR
       continue;
     }
     const std::uint32_t block = top.name & ~caster_leaf_bit;
-    CasterHit hit = hit_block(blocks[block], ray, from, best.t);
+    CasterHit hit = hit_block<query>(blocks[block], ray, from, best.t);
     if (hit.place == caster_width) continue;
     hit.block = block;
     best = hit;
-    if (query == CasterQuery::any) break;
+    if constexpr (query == CasterQuery::any) break;
   }
   return best;
+}
+
+CasterHit walk(const CasterNode* nodes, const CasterBlock* blocks, const CasterRay& ray, float from, float to,
+               CasterQuery query) {
+  return query == CasterQuery::any ? walk_for<CasterQuery::any>(nodes, blocks, ray, from, to)
+                                   : walk_for<CasterQuery::nearest>(nodes, blocks, ray, from, to);
 }
 
 std::uint32_t piece(const CasterBlock& block, std::size_t place, const CasterRays& rays, float rounding,
@@ -264,7 +324,9 @@ std::uint32_t piece(const CasterBlock& block, std::size_t place, const CasterRay
     };
     const Seen seen(point, turn);
     const V first = hn::Load(d, from + at), last = hn::Load(d, to + at);
-    const auto candidates = seen.within(near, first, last);
+    auto candidates = seen.within(near, first, last);
+    if (bits(d, candidates) == 0) continue;
+    candidates = hn::And(candidates, passes_between_sides(seen, near));
     if (bits(d, candidates) == 0) continue;
     const Found found = first_hits(seen, candidates, near, first, last);
     const auto nearer = hn::Lt(found.t, hn::Set(d, INFINITY));
