@@ -249,6 +249,29 @@ TEST(ray_kernel, sides_may_be_shorter_than_what_single_precision_has_squares_for
   EXPECT_GT(missed, testing::fewer(10'000));
 }
 
+TEST(ray_kernel, segments_are_placed_with_one_rounding_to_single_precision) {
+  testing::EachInstructionSet().run([](const char* name) {
+    std::mt19937_64 random(95);
+    for (int trial = 0; trial < 500; ++trial) {
+      const Point3 origin{unit(random), unit(random), unit(random)};
+      const Segments segments =
+          any_segments(random, {origin}, std::ldexp(1.0, -static_cast<int>(random() % 20)));
+      kernels::SegmentPlaces places{};
+      for (std::size_t i = 0; i < 8; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          places.middle[k][i] = segments.middle[i][k];
+          places.direction[k][i] = segments.along[i][k];
+        }
+      }
+      SeenSegments placed{};
+      kernels::place_segments(places, origin, placed);
+      const SeenSegments wanted = segments.seen(origin);
+      ASSERT_EQ(placed.middle, wanted.middle) << name << ", trial " << trial;
+      ASSERT_EQ(placed.origin, wanted.origin) << name << ", trial " << trial;
+    }
+  });
+}
+
 TEST(ray_kernel, results_are_the_same_on_every_instruction_set) {
   std::vector<std::vector<std::uint32_t>> results;
   testing::EachInstructionSet().run([&](const char*) {

@@ -981,6 +981,20 @@ TEST(rays, that_lie_together_have_the_answers_of_each_alone) {
       if (!ask(testing::control_mesh(mesh), {scheme}, std::string(name_of(scheme)))) return;
     }
   }
+  // Surfaces that are lines, where nothing is proved and budgets end.
+  for (const Scheme scheme : {Scheme::catmark, Scheme::loop}) {
+    for (int shape = 0; shape < 3; ++shape) {
+      const TaggedMesh grid = oracle::meshes::quad_grid(4, 4);
+      ControlMesh mesh =
+          testing::control_mesh(scheme == Scheme::loop ? oracle::meshes::triangulated(grid) : grid);
+      for (Point3& p : mesh.points) {
+        const double place =
+            p.x + (shape % 2 == 0 ? 0.1 : 0.7) * p.y + 0.3 * static_cast<double>(random() % 64) / 64;
+        p = {place, 2 * place, -place};
+      }
+      if (!ask(mesh, {scheme}, "line, " + std::string(name_of(scheme)))) return;
+    }
+  }
   std::cout << "  " << counts.hits << " hits, " << counts.misses << " misses, " << counts.unsure
             << " unsure\n";
   EXPECT_GT(counts.hits, 4000u);

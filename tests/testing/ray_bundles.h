@@ -4,6 +4,7 @@
 #include <snug/snug.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -66,10 +67,12 @@ inline void expect_together_as_alone(const Surface& surface, const std::string& 
     for (const RayQuery query : {RayQuery::nearest, RayQuery::all, RayQuery::any}) {
       RayOptions options{.query = query};
       if (random() % 2 == 0) options.absolute = 1e-3 * size;
-      const std::vector<RayHits> together = ray(surface, rays, options, {.threads = 2});
+      Run run{.threads = 2};
+      if (random() % 2 == 0) run.max_splits = std::array{60u, 200u, 600u}[random() % 3];
+      const std::vector<RayHits> together = ray(surface, rays, options, run);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const std::string which = name + ", sort " + std::to_string(sort) + ", ray " + std::to_string(i);
-        const RayHits alone = ray(surface, rays[i], options);
+        const RayHits alone = ray(surface, rays[i], options, run);
         const RayHits& one = together[i];
         (alone.certain_hit() ? counts.hits : alone.certain_miss() ? counts.misses : counts.unsure)++;
         ASSERT_EQ(alone.certain_hit(), one.certain_hit()) << which;

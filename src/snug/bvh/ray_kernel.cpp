@@ -96,6 +96,21 @@ std::uint32_t rays(const NodeBoxes& node, std::size_t place, const SeenSegments&
   return result;
 }
 
+void place(const SegmentPlaces& all, const Point3& origin, SeenSegments& out) {
+  const hn::CappedTag<double, ray_width> d;
+  const hn::Rebind<float, decltype(d)> narrow;
+  for (std::size_t at = 0; at < ray_width; at += hn::Lanes(d)) {
+    hn::Vec<decltype(d)> along[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto from = hn::Sub(hn::LoadU(d, all.middle[k].data() + at), hn::Set(d, origin[k]));
+      hn::StoreU(hn::DemoteTo(narrow, from), narrow, out.middle[k].data() + at);
+      along[k] = hn::Mul(hn::LoadU(d, all.direction[k].data() + at), from);
+    }
+    const auto own = hn::Neg(hn::Add(hn::Add(along[0], along[1]), along[2]));
+    hn::StoreU(hn::DemoteTo(narrow, own), narrow, out.origin.data() + at);
+  }
+}
+
 // A side of the triangle and a ray span a plane; all of the set may lie on one side of the parallel one through the ray.
 Meeting beside(const NearQuadratic& set, const SeenSegments& segments) {
   const Tag d;
@@ -161,9 +176,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace snug::kernels {
 
+HWY_EXPORT(place);
 HWY_EXPORT(boxes);
 HWY_EXPORT(rays);
 HWY_EXPORT(beside);
+
+void place_segments(const SegmentPlaces& all, const Point3& node_origin, SeenSegments& out) {
+  HWY_DYNAMIC_DISPATCH(place)(all, node_origin, out);
+}
 
 std::uint32_t boxes_met(const NodeBoxes& node, const SeenSegments& segments, std::size_t which,
                         std::array<float, node_width>& begin) {

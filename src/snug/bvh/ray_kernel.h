@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <snug/bvh/node_kernels.h>
+#include <support/point.h>
 
 /// Segments of rays against boxes of nodes, eight boxes or eight segments at once, in single precision. The same bits on every
 /// instruction set, and for a box and a segment either way.
@@ -21,6 +22,13 @@ struct alignas(32) SeenSegments {
   std::array<float, ray_width> origin;  ///< the node's, along the segment from its middle; rounded once
   std::array<float, ray_width> slack;   ///< boxes this near are met, besides what roundings do
 };
+
+/// The same segments in space.
+struct alignas(64) SegmentPlaces {
+  std::array<std::array<double, ray_width>, 3> middle, direction;
+};
+/// Writes what depends on the node's origin: the middles, and where along each it is.
+void place_segments(const SegmentPlaces& all, const Point3& node_origin, SeenSegments& out);
 
 /// The boxes of a node that one of the segments may meet, a bit each, and lower bounds of where, from its middle.
 /// Guarantee: a box without its bit is farther than the slack from the segment; so are points of boxes before `begin`.

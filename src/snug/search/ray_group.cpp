@@ -77,6 +77,10 @@ RayGroup::RayGroup(PieceCache& cache, std::span<GroupedRay> rays, const WorkMoni
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const GroupedRay& ray = rays[i];
     set(segments_, i, ray, 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      places_.middle[k][i] = ray.near.middle[k];
+      places_.direction[k][i] = ray.task->along[k];
+    }
     set_limit(i);
     wide = std::max(
         wide, apart(middle.near, middle.task->along, ray.near, ray.task->along) + 16 * ray.near.rounding);
@@ -115,7 +119,7 @@ Verb RayGroup::look_at(const NodeRays& at) {
   if (left_ == 0) return Verb::drop;
   if (!at.node.bounded()) return Verb::open;
   const PieceBounds& record = PieceCache::bounds_of(at.node);
-  place(at.node.boxes->origin());
+  kernels::place_segments(places_, at.node.boxes->origin(), segments_);
   const kernels::Meeting seen =
       kernels::segments_meeting({record.net(), float_up(record.error()), record.reach()}, segments_);
   left_ &= seen.near;
@@ -137,7 +141,7 @@ bool RayGroup::is_to_be_opened(const NodeRays& at, std::size_t i, bool in_vain) 
   const RayTask& task = *ray.task;
   monitor_.checkpoint();
   const PieceBounds& record = PieceCache::bounds_of(at.node);
-  if (in_vain && ray.splits < std::min(quick_splits, task.budget) && PieceCache::can_open(at.node)) {
+  if (in_vain && ray.splits < quick_splits(task) && PieceCache::can_open(at.node)) {
     ++ray.splits;
     return true;
   }
@@ -165,7 +169,7 @@ bool RayGroup::is_to_be_opened(const NodeRays& at, std::size_t i, bool in_vain) 
   }
   const double off = crossing.limited_by_errors ? piece.error() : piece.width();
   const bool small = !hit && off <= tube_share / 8 * task.precision;
-  if (small || !cache_.can_open_further(at.node) || ray.splits >= std::min(quick_splits, task.budget)) {
+  if (small || !cache_.can_open_further(at.node) || ray.splits >= quick_splits(task)) {
     ray.failed = std::min(ray.failed, crossing.along.lower);
     return guard(false);
   }
@@ -173,18 +177,10 @@ bool RayGroup::is_to_be_opened(const NodeRays& at, std::size_t i, bool in_vain) 
   return guard(true);
 }
 
-void RayGroup::place(const Point3& origin) {
-  for (std::size_t i = 0; i < rays_.size(); ++i) {
-    const Vector3 from = rays_[i].near.middle - origin;
-    for (std::size_t k = 0; k < 3; ++k) segments_.middle[k][i] = static_cast<float>(from[k]);
-    segments_.origin[i] = static_cast<float>(-dot(rays_[i].task->along, from));
-  }
-}
-
 void RayGroup::open(const NodeRays& at) {
   const PieceCache::Opened opened = cache_.open(at.node);
   const WideNode& boxes = *opened.boxes;
-  place(boxes.origin());
+  kernels::place_segments(places_, boxes.origin(), segments_);
   Frontier<NodeRays>& frontier = cache_.open_rays();
   NodeRays child{};
   std::array<float, kernels::node_width> begins;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -11,8 +12,11 @@
 
 namespace snug {
 
-/// Splits after which a ray that meets no border should have been decided.
-inline constexpr std::uint64_t quick_splits = 256;
+/// Splits after which a ray that meets no border should have been decided. Those that are left of the budget are for the others,
+/// however few were needed to know that: a ray in company, of which some boxes are ruled out together, may need fewer.
+[[nodiscard]] inline std::uint64_t quick_splits(const RayTask& task) {
+  return std::min<std::uint64_t>(256, task.budget / 2);
+}
 /// Share of a tube's radius that pieces in it may be off by.
 inline constexpr double tube_share = 0x1p-5;
 
@@ -50,11 +54,11 @@ class RayGroup {
  private:
   [[nodiscard]] bool is_to_be_opened(const NodeRays& at, std::size_t ray, bool in_vain);
   void set_limit(std::size_t ray);
-  void place(const Point3& origin);
 
   PieceCache& cache_;
   std::span<GroupedRay> rays_;
   const WorkMonitor& monitor_;
+  kernels::SegmentPlaces places_{};  // of the rays
   kernels::SeenSegments segments_{},
       beam_{};  // the rays; and the middle one, as wide as all of them, in lane 0
   std::array<float, kernels::ray_width>

@@ -88,7 +88,7 @@ class TubeWalk {
         monitor_(monitor),
         near_(ray.near),
         ray_(task_.origin, task_.along),
-        splits_(ray.splits) {
+        splits_(quick_splits(task_)) {
     for (std::size_t k = 0; k < 3; ++k) segment_.direction[k][0] = static_cast<float>(task_.along[k]);
     segment_.half[0] = float_up(near_.half * (1 + 0x1p-20));
   }
@@ -334,7 +334,8 @@ void walk_rays(PieceCache& cache, std::span<const RayTask> tasks, const WorkMoni
     rays.push_back({&tasks[i], near});
   }
   for (std::size_t begin = 0, end; begin < rays.size(); begin = end) {
-    for (end = begin + 1; end < rays.size() && lie_close(rays[begin], rays[end], widest_group * ball.radius);
+    const std::size_t most = std::min(rays.size(), begin + kernels::ray_width);
+    for (end = begin + 1; end < most && lie_close(rays[begin], rays[end], widest_group * ball.radius);
          ++end) {
     }
     const std::span<GroupedRay> group = std::span(rays).subspan(begin, end - begin);

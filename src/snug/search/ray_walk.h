@@ -1,15 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
-#include <snug/bvh/ray_kernel.h>
 #include <snug/search/piece_cache.h>
 #include <snug/search/ray_task.h>
 
 namespace snug {
 
-/// Rays that are asked for at once, of which those that lie close together go down the tree as one.
-inline constexpr std::size_t rays_at_once = kernels::ray_width;
+/// Rays that are asked for at once. Of those that come near the surface up to eight that follow one another and lie close together
+/// go down the tree as one.
+inline constexpr std::size_t rays_at_once = 64;
 /// The hits of one ray or more: ray() of ray.h.
 ///
 /// Pieces that the line misses are dropped, others split, the nearest first. A piece that its line certainly
