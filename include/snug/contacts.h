@@ -66,7 +66,8 @@ struct IntersectionCurve {
   std::uint32_t region = 0;
 };
 
-/// A box in which A and B may intersect in an unresolved way: tangentially, in an area, or at a corner of patches.
+/// A box in which A and B may intersect in an unresolved way: tangentially, in an area, or at a corner of patches. Where there
+/// are more than some 4,000, or than pairs of patches, neighbouring ones are one.
 struct OpenBox {
   Box3 box;
   std::array<PatchPlace, 2> patches;

@@ -104,6 +104,18 @@ TEST(contacts, of_a_ball_and_a_plane_are_one_closed_curve) {
   }
 }
 
+// Two cubes on each other: a square, in boxes of which there are not too many and that leave nothing of it out.
+TEST(contacts, in_an_area_are_in_few_open_boxes) {
+  const Surface cube(testing::control_mesh(oracle::meshes::cube()), {.scheme = Scheme::bilinear});
+  const Contacts found = contacts(cube, cube.at(Motion::translation({0.3, 0.2, 1})));
+  EXPECT_GT(found.open.size(), 1000u);
+  EXPECT_LE(found.open.size(), 5000u);
+  for (double x = 0.3; x <= 1; x += 0.07) {
+    for (double y = 0.2; y <= 1; y += 0.08) EXPECT_TRUE(listed(found, {x, y, 1})) << x << ' ' << y;
+  }
+  for (const OpenBox& open : found.open) EXPECT_LT(open.region, found.regions.size());
+}
+
 // Edges of pieces of the ball lie in the plane.
 TEST(contacts, along_edges_of_pieces_are_in_open_boxes) {
   const Surface a = ball(), b = plane(2.5);

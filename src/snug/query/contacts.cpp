@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
+#include <tuple>
 #include <utility>
 
 #include <snug/geometry/rounding.h>
@@ -22,6 +24,8 @@ namespace {
 // Pieces of regions are at most this share of the larger surface; those of which nothing is proved are split so many
 // times smaller.
 constexpr double largest_share = 0x1p-5, smallest_share = 0x1p-3;
+// Of an answer, about.
+constexpr std::size_t max_open = 4000;
 
 // Two pieces that may be within the tolerance of each other. Lengths are in the query's units.
 struct ContactPair {
@@ -149,6 +153,28 @@ class ContactWalk {
   double fine_ = 0;  // larger pieces are split
   std::vector<ContactPair> near_;
 };
+
+// Replaces boxes by boxes around some of them, halved along the longest side until they are `most`.
+void add_merged(std::span<UnresolvedPieces> open, std::size_t most, std::vector<UnresolvedPieces>& merged) {
+  if (open.size() <= most) {
+    merged.insert(merged.end(), open.begin(), open.end());
+    return;
+  }
+  Box3 all;
+  for (const UnresolvedPieces& one : open) all.add(one.box);
+  if (most <= 1) {
+    merged.push_back({all, open[0].roots, open[0].contact});
+    return;
+  }
+  const Vector3 sides = all.upper - all.lower;
+  const std::size_t axis = sides.x >= sides.y ? (sides.x >= sides.z ? 0 : 2) : (sides.y >= sides.z ? 1 : 2);
+  std::stable_sort(open.begin(), open.end(), [&](const UnresolvedPieces& a, const UnresolvedPieces& b) {
+    return a.box.lower[axis] + a.box.upper[axis] < b.box.lower[axis] + b.box.upper[axis];
+  });
+  const std::size_t half = open.size() / 2;
+  add_merged(open.first(half), most / 2, merged);
+  add_merged(open.subspan(half), most - most / 2, merged);
+}
 
 // All contacts: regions of pairs, and the curves in them.
 class ContactsSearch {
@@ -337,11 +363,30 @@ class ContactsSearch {
       curve.error = unscaled_up(enlarged(3 * error), back) + underflow_error;
       answer_.curves.push_back(std::move(curve));
     }
-    for (const UnresolvedPieces& open : cut_.unresolved) {
+    for (const UnresolvedPieces& open : few_open()) {
       answer_.open.push_back({unscaled(open.box, back),
                               {surface(0).place(open.roots[0]), surface(1).place(open.roots[1])},
                               near_[open.contact].region});
     }
+  }
+
+  // Boxes of the same patches and region together, where there are too many.
+  [[nodiscard]] std::vector<UnresolvedPieces> few_open() const {
+    std::vector<UnresolvedPieces> open = cut_.unresolved, merged;
+    if (open.size() <= max_open) return open;
+    const auto place = [&](const UnresolvedPieces& one) {
+      return std::tuple(near_[one.contact].region, one.roots);
+    };
+    std::stable_sort(open.begin(), open.end(), [&](const UnresolvedPieces& a, const UnresolvedPieces& b) {
+      return place(a) < place(b);
+    });
+    const std::span<UnresolvedPieces> all(open);
+    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+      while (end < all.size() && place(all[end]) == place(all[begin])) ++end;
+      const std::size_t count = end - begin;
+      add_merged(all.subspan(begin, count), std::max<std::size_t>(1, max_open * count / all.size()), merged);
+    }
+    return merged;
   }
 
   PairFrames frames_;
