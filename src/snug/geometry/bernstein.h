@@ -36,14 +36,14 @@ struct Bernstein {
   }
 };
 
-namespace detail {
-
 constexpr double binomial(std::size_t n, std::size_t k) {
   double b = 1;
   // A whole number after each step.
   for (std::size_t i = 1; i <= k; ++i) b = b * static_cast<double>(n + 1 - i) / static_cast<double>(i);
   return b;
 }
+
+namespace detail {
 
 template <class P>
 struct Binomials;

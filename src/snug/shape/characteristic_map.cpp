@@ -34,6 +34,16 @@ double growth_of(const std::vector<double>& matrix, std::size_t size) {
   return enlarged(0.5 * widest);
 }
 
+double largest_sum(const std::vector<double>& matrix, std::size_t size) {
+  double largest = 0;
+  for (std::size_t r = 0; r < size; ++r) {
+    double sum = 0;
+    for (std::size_t c = 0; c < size; ++c) sum += std::fabs(matrix[r * size + c]);
+    largest = std::max(largest, sum);
+  }
+  return enlarged(largest * (1 + gamma_bound(size)));
+}
+
 // Powers of a square matrix. `sum`: largest absolute sum of a row; `error`: largest sum of a row's errors.
 struct Power {
   std::size_t size;
@@ -50,6 +60,17 @@ struct Power {
     error = enlarged(rows.max_error() + gamma_bound(8) * sum);
   }
 
+  // Takes one row off all rows, here and, up to some row, in all powers: no extent sees that. Off the limit's row, so that powers
+  // shrink as what is left does.
+  void remove(const Stencils::Row& row) {
+    for (std::size_t r = 0; r < size; ++r) {
+      for (std::size_t i = 0; i < row.sources.size(); ++i)
+        matrix[r * size + row.sources[i]] -= row.weights[i];
+    }
+    error = enlarged(error + gamma_bound(4) * (sum + row.abs_sum));
+    sum = largest_sum(matrix, size);
+  }
+
   void square() {
     std::vector<double> product(size * size, 0.0);
     for (std::size_t r = 0; r < size; ++r) {
@@ -60,7 +81,7 @@ struct Power {
       }
     }
     error = enlarged(error * (2 * sum + error) + gamma_bound(size + 2) * sum * sum);
-    sum = enlarged(sum * sum);
+    sum = largest_sum(product, size);
     matrix = std::move(product);
   }
 };
@@ -87,14 +108,6 @@ double CharacteristicMap::projection() const {
     sum += (extents_[t] + direction_errors_[t]) * (row_sums_[t] + row_errors_[t]);
   }
   return enlarged(sum);
-}
-
-// Extent of what the directions found, times these numbers, are off the plane of V: (V' - V) (W V') m, of the V'
-// that is dual to W in their plane.
-double CharacteristicMap::off_plane(const std::array<double, 2>& m) const {
-  const double both = 0x1p-18 * (std::fabs(m[0]) + std::fabs(m[1]));
-  return enlarged(direction_errors_[0] * (std::fabs(m[0]) + both) +
-                  direction_errors_[1] * (std::fabs(m[1]) + both));
 }
 
 // From (W A)_c = l W_c, where W_c is large.
@@ -201,12 +214,12 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
 
   const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
   Power power(step, size_);
+  power.remove(kind_->corner_limits().row(corner_));
   double scale = least;  // least^(2^i), a lower bound
   std::array<double, 2> shrink{eigenvalues_[0].lower, eigenvalues_[1].lower};
   std::array<double, 2> sums{1, 1};
-  growth_ = 1;
   std::array<double, 2> powers{middle(eigenvalues_[0]), middle(eigenvalues_[1])};
-  const double step_sum = power.sum;
+  const double step_sum = step.max_abs_sum();
   for (unsigned i = 0;; ++i) {
     std::vector<double> rest = power.matrix;
     double projected = 0, projected_error = 0;
@@ -227,7 +240,8 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
                  gamma_bound(8) * (power.sum + projected));
     const double factor = enlarged(contraction / scale);
     if (factor < enough_contraction) {
-      period_ = std::size_t{1} << i;
+      contraction_.period = std::size_t{1} << i;
+      contraction_.factor = factor;
       for (std::size_t t = 0; t < 2; ++t) {
         const double own = enlarged(contraction / shrink[t]);
         sums[t] = enlarged(sums[t] / (1 - own));
@@ -235,7 +249,7 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
       break;
     }
     if (i == max_squarings) return false;
-    growth_ = enlarged(growth_ * std::max(1.0, factor));
+    contraction_.growth = enlarged(contraction_.growth * std::max(1.0, factor));
     for (std::size_t t = 0; t < 2; ++t) {
       sums[t] = enlarged(sums[t] * (1 + contraction / shrink[t]));
       shrink[t] = shrink[t] * shrink[t] * (1 - gamma_bound(2));
@@ -243,7 +257,7 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
     }
     scale = scale * scale * (1 - gamma_bound(2));
     power.square();
-    if (!(scale > 1e-250) || !std::isfinite(growth_)) return false;
+    if (!(scale > 1e-250) || !std::isfinite(contraction_.growth)) return false;
   }
   // r = A V / l - V, of V made exact; V itself is V + sum (A / l)^i r.
   std::vector<double> image;
@@ -293,7 +307,7 @@ double CharacteristicMap::largest_rest(std::vector<double> rest, double error) c
   std::vector<double> next;
   for (int i = 0; i <= powers; ++i) {
     const double now = enlarged((extent(rest) + error) / scale);
-    best = std::min(best, std::max(before, enlarged(growth_ * now)));
+    best = std::min(best, std::max(before, enlarged(contraction_.growth * now)));
     before = std::max(before, now);
     apply(step, rest, next);
     error = enlarged(step.max_abs_sum() * error + rounding * largest_of(rest));

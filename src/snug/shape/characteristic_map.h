@@ -60,7 +60,6 @@ class CharacteristicMap {
   [[nodiscard]] bool find_directions(const Stencils& step);
   [[nodiscard]] bool bound_remainders(const Stencils& step);
   [[nodiscard]] double projection() const;
-  [[nodiscard]] double off_plane(const std::array<double, 2>& m) const;
   [[nodiscard]] double largest_rest(std::vector<double> rest, double error) const;
   [[nodiscard]] std::array<double, 2> tangent(const std::vector<double>& values) const;
 
@@ -74,8 +73,11 @@ class CharacteristicMap {
   std::array<std::vector<double>, 2> directions_;  // about V
   std::array<double, 2> extents_{};                // of these
   std::array<double, 2> direction_errors_{};       // extents of V less these
-  std::size_t period_ = 1;  // the extent of A^period r is less than that power of the least eigenvalue
-  double growth_ = 1;       // of the extent of A^j r over that of r, over the least eigenvalue's power
+  // Of the extent of A^j r over that of r, over the least eigenvalue's power: at most `growth`; of j = period, `factor`.
+  struct Contraction {
+    std::size_t period = 1;
+    double factor = 1, growth = 1;
+  } contraction_;
 };
 
 /// None where the kind does not come again at a corner, where the tangents' eigenvalues are not proved to be

@@ -11,178 +11,151 @@
 namespace snug {
 namespace {
 
-// Rings that are bounded. Share of the size below which a rest is not worth more rings.
-constexpr std::size_t max_rings = 120;
-constexpr double small_rest = 0x1p-13;
+// Levels that are followed. Share of the size below which what is left is not worth more of them.
+constexpr std::size_t max_rings = 400;
+constexpr double small_rest = 0x1p-24;
+
+// Constants last, and no extent sees them.
+void centre(std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double middle = 0.5 * *least + 0.5 * *most;
+  for (double& x : values) x -= middle;
+}
 
 }  // namespace
 
 CornerRings::CornerRings(const CharacteristicMap& map, const Patch& values) : map_(&map), values_(&values) {
-  for (std::size_t c = 0; c < 2; ++c) decompose(c);
-  for (count_ = 1; count_ < max_rings && !(small(parts_[0]) && small(parts_[1])); ++count_) {
-    for (Value& part : parts_) descend(part);
+  const Interval least = map.conformal_ ? map.eigenvalues_[0] : map.eigenvalues_[1 - map.dominant_];
+  least_off_ = enlarged((least.upper - least.lower) / least.lower);
+  if (!map.conformal_) ratio_ = map.eigenvalues_[map.dominant_] / least;
+  Level first;
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (const Vector3& p : values.points) first.values[c].push_back(c == 0 ? p.x : p.y);
+    centre(first.values[c]);
+    first.largest = std::max(first.largest, largest_of(first.values[c]));
   }
-  // Further ones cannot be larger than those of a period; nor than what one leaves, times the growth.
-  for (Value& part : parts_) {
-    const double fading = map.growth_ * part.rests.back().fading;
-    const auto at = [&](std::size_t level) { return part.rests[level].extent + part.rests[level].along; };
-    part.largest_after.resize(count_);
-    double largest = INFINITY;
-    for (std::size_t level = count_; level-- > 0;) {
-      largest = enlarged(std::min(map.growth_ * at(level), std::max(at(level), largest)));
-      if (level + map.period_ <= count_) {
-        double widest = 0;
-        for (std::size_t k = level; k < level + map.period_; ++k) widest = std::max(widest, at(k));
-        largest = std::min(largest, enlarged(widest));
-      }
-      part.largest_after[level] = enlarged(largest + fading);
-    }
+  first.off = enlarged(values.error + gamma_bound(2) * values.largest);
+  all_off_ = growing_off_ = first.off;
+  levels_.push_back(std::move(first));
+  descend(middle(least));
+  descend(middle(least));
+  std::vector<double> parts;
+  for (; parts.size() < max_rings; descend(middle(least))) {
+    const Lasting last = lasting(parts.size());
+    parts.push_back(enlarged(last.extent + last.off));
+    // Beyond, roundings are all that is seen, which grow where one eigenvalue is larger; or there is little, for a whole period.
+    const std::size_t period = map.contraction_.period;
+    const double before = parts.size() < period ? INFINITY : parts[parts.size() - period];
+    if (before < small_rest * levels_[0].largest || before < 4 * last.off ||
+        (!map.conformal_ && last.extent < last.off))
+      break;
   }
+  add_up(std::move(parts));
 }
 
-void CornerRings::decompose(std::size_t c) {
-  const CharacteristicMap& map = *map_;
-  Value& part = parts_[c];
-  std::vector<double> y(map.size_);
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] = c == 0 ? values_->points[i].x : values_->points[i].y;
-  part.own = map.conformal_ ? 0 : c;
-  const CharacteristicMap::Shares shares = map.shares(y, *values_);
-  part.m = shares.m;
-  part.off = shares.off;
-  for (std::size_t t = 0; t < 2; ++t) {
-    part.ratios[t] =
-        map.conformal_ || t == part.own ? Interval{1} : map.eigenvalues_[t] / map.eigenvalues_[part.own];
-  }
-  if (!map.conformal_ && map.dominant_ != part.own) {
-    part.m[map.dominant_] = part.off[map.dominant_] = 0;
-  }
-  Rest rest;
-  rest.values = std::move(y);
-  double largest = values_->largest;
-  for (std::size_t i = 0; i < rest.values.size(); ++i) {
-    const double a = part.m[0] * map.directions_[0][i], b = part.m[1] * map.directions_[1][i];
-    largest = std::max(largest, std::fabs(a) + std::fabs(b));
-    rest.values[i] -= a + b;
-  }
-  rest.fading = enlarged((1 + map.projection()) * (values_->error + gamma_bound(8) * 3 * largest) +
-                         map.off_plane(part.m));
-  remove_directions(rest);
-  part.rests.push_back(std::move(rest));
-}
-
-// One level on.
-void CornerRings::descend(Value& part) const {
+// One level on, over a number near the eigenvalue: levels are scaled anyhow. An error is as large, later, as the parts of it that grow, and growth_ times the rest.
+void CornerRings::descend(double least) {
   const CharacteristicMap& map = *map_;
   const Stencils& step = map.kind_->children()[map.corner_].stencils;
-  const Interval& eigenvalue = map.eigenvalues_[part.own];
-  const Rest& before = part.rests.back();
-  Rest rest;
-  apply(step, before.values, rest.values);
-  const double divisor = middle(eigenvalue);
-  for (double& x : rest.values) x /= divisor;
-  const double largest = largest_of(before.values) / divisor;
-  const double error = (step.max_error() + gamma_bound(map.size_ + 2) * step.max_abs_sum()) * largest +
-                       (gamma_bound(2) + (eigenvalue.upper - eigenvalue.lower) / eigenvalue.lower) *
-                           (step.max_abs_sum() + step.max_error()) * largest;
-  rest.fading = enlarged(before.fading + (1 + map.projection()) * error);
-  remove_directions(rest);
-  part.rests.push_back(std::move(rest));
+  const Level& before = levels_.back();
+  Level next;
+  const double largest = before.largest / least;
+  for (std::size_t c = 0; c < 2; ++c) {
+    apply(step, before.values[c], next.values[c]);
+    for (double& x : next.values[c]) x /= least;
+    centre(next.values[c]);
+    next.largest = std::max(next.largest, largest_of(next.values[c]));
+  }
+  const double off =
+      (step.max_error() + gamma_bound(map.size_ + 6) * (step.max_abs_sum() + step.max_error())) * largest;
+  all_off_ = enlarged(all_off_ + off);
+  growing_off_ = enlarged(ratio_.upper * growing_off_ + off);
+  const double along = map.projection();
+  next.off = enlarged(map.contraction_.growth * (1 + along) * all_off_ + along * growing_off_);
+  levels_.push_back(std::move(next));
 }
 
-// Takes off the part along V: the exact rest has none.
-void CornerRings::remove_directions(Rest& rest) const {
-  const CharacteristicMap& map = *map_;
-  // Constants last, and no extent sees them.
-  const auto centre = [&] {
-    const auto [least, most] = std::minmax_element(rest.values.begin(), rest.values.end());
-    const double middle = 0.5 * *least + 0.5 * *most;
-    for (double& x : rest.values) x -= middle;
-  };
-  double largest = largest_of(rest.values);
-  centre();
-  const std::array<double, 2> share = map.tangent(rest.values);
-  for (std::size_t i = 0; i < rest.values.size(); ++i) {
-    const double a = share[0] * map.directions_[0][i], b = share[1] * map.directions_[1][i];
-    largest = std::max(largest, std::fabs(a) + std::fabs(b));
-    rest.values[i] -= a + b;
+// From a level to the next one.
+CornerRings::Level CornerRings::step_of(std::size_t level) const {
+  const Level &from = levels_[level], &to = levels_[level + 1];
+  Level step;
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t i = 0; i < map_->size_; ++i)
+      step.values[c].push_back(to.values[c][i] - from.values[c][i]);
+    centre(step.values[c]);
+    step.largest = std::max(step.largest, largest_of(step.values[c]));
   }
-  centre();
-  rest.fading =
-      enlarged(rest.fading + (1 + map.projection()) * gamma_bound(8) * 4 * largest + map.off_plane(share));
-  rest.extent = extent(rest.values);
-  const std::array<double, 2> left = map.tangent(rest.values);
-  const double size = largest_of(rest.values);
-  for (std::size_t t = 0; t < 2; ++t) {
-    const double most =
-        std::fabs(left[t]) + (map.row_errors_[t] + gamma_bound(map.size_ + 2) * map.row_sums_[t]) * size;
-    rest.along += (map.extents_[t] + map.direction_errors_[t]) * most;
-  }
-  rest.along = enlarged(rest.along);
+  step.off = enlarged(from.off + to.off + (gamma_bound(3) + least_off_) * (from.largest + to.largest));
+  return step;
 }
 
-// Would what is left hardly be seen beside the value's own direction?
-bool CornerRings::small(const Value& part) const {
-  const double size = std::fabs(part.m[part.own]) * map_->extents_[part.own];
-  return map_->growth_ * part.rests.back().extent <= small_rest * size;
+// The extent of a step, less what the step before leaves to it: this shrinks.
+CornerRings::Lasting CornerRings::lasting(std::size_t level) const {
+  const Level step = step_of(level);
+  double widest = 0;
+  if (map_->conformal_) {
+    for (const auto& values : step.values) widest = std::max(widest, extent(values));
+    return {widest, step.off};
+  }
+  const Level next = step_of(level + 1);
+  const double ratio = middle(ratio_);
+  for (std::size_t c = 0; c < 2; ++c) {
+    std::vector<double> rest(map_->size_);
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = next.values[c][i] - ratio * step.values[c][i];
+    widest = std::max(widest, extent(rest));
+  }
+  const double of_ratio = (ratio_.upper - ratio_.lower + gamma_bound(2) * ratio) * step.largest;
+  return {widest, enlarged(next.off + ratio_.upper * step.off + of_ratio + gamma_bound(2) * next.largest)};
 }
 
-CornerRings::Filled CornerRings::fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const {
-  const CharacteristicMap& map = *map_;
-  const Value& part = parts_[c];
-  std::array<double, 2> kept{};
-  double error = 0;
-  for (std::size_t t = 0; t < 2; ++t) {
-    Interval power{1};
-    for (std::size_t i = 0; i < level && part.ratios[t] != Interval{1}; ++i) power = power * part.ratios[t];
-    const double m = std::fabs(part.m[t]), exact_extent = map.extents_[t] + map.direction_errors_[t];
-    if (all_further && part.ratios[t] != Interval{1}) {
-      // It shrinks faster: from its share to none.
-      error += (m + part.off[t]) * power.upper * exact_extent;
-      continue;
-    }
-    kept[t] = part.m[t] * middle(power);
-    error += ((m + part.off[t]) * map.direction_errors_[t] + part.off[t] * map.extents_[t]) * power.upper +
-             m * (power.upper - power.lower) * map.extents_[t];
+// Parts beyond the last ones shrink by the factor of a period.
+void CornerRings::add_up(std::vector<double> parts) {
+  const CharacteristicMap::Contraction& shrinks = map_->contraction_;
+  const auto period = static_cast<double>(shrinks.period);
+  const double rest = 1 - shrinks.factor, grown = ratio_.lower - 1;
+  // What the levels are scaled by differs from the eigenvalue's power.
+  for (double& part : parts) part *= 1 + 4 * static_cast<double>(parts.size()) * least_off_;
+  const double end = shrinks.growth * parts.back() * period;
+  Sums sums{enlarged(end / rest), enlarged(end * period / (rest * rest)), 0};
+  if (parts.size() >= shrinks.period) {
+    double last = 0;
+    for (std::size_t k = parts.size() - shrinks.period; k < parts.size(); ++k) last += parts[k];
+    sums.once = std::min(sums.once, enlarged(last * shrinks.factor / rest));
+    sums.twice = std::min(sums.twice, enlarged(last * period * shrinks.factor / (rest * rest)));
   }
-  const Rest& rest = part.rests[level];
-  error += all_further ? part.largest_after[level] : map.growth_ * rest.fading + rest.along;
-  double largest = 0, sum = 0;
-  for (std::size_t i = 0; i < map.size_; ++i) {
-    const double a = kept[0] * map.directions_[0][i], b = kept[1] * map.directions_[1][i];
-    const double own = all_further ? 0 : rest.values[i];
-    (c == 0 ? net.points[i].x : net.points[i].y) = a + b + own;
-    sum = std::max(sum, std::fabs(a) + std::fabs(b) + std::fabs(own));
-    largest = std::max(largest, std::fabs(a + b + own));
+  sums.of_growth = sums.once;
+  further_.resize(parts.size());
+  for (std::size_t level = parts.size(); level-- > 0;) {
+    sums.once = enlarged(sums.once + parts[level]);
+    sums.twice = enlarged(sums.twice + sums.once);
+    if (grown > 0) sums.twice = std::min(sums.twice, enlarged(sums.once / grown));
+    sums.of_growth = enlarged((sums.of_growth + parts[level]) / ratio_.lower);
+    further_[level] = sums;
   }
-  return {largest, enlarged(error + gamma_bound(6) * sum)};
 }
 
-Patch CornerRings::made(std::size_t level, bool all_further) const {
+Patch CornerRings::patch_of(const Level& level) const {
   Patch net;
   net.kind = map_->kind_;
   net.first = values_->first;
-  net.points.resize(map_->size_);
-  std::array<Filled, 2> filled;
-  for (std::size_t c = 0; c < 2; ++c) filled[c] = fill(c, level, all_further, net);
-  // By powers of two to a size of about 1. With turned axes a condition mixes both values: then one for both.
-  if (map_->conformal_) {
-    filled[0].largest = filled[1].largest = std::max(filled[0].largest, filled[1].largest);
-  }
-  std::array<double, 2> scales{};
-  for (std::size_t c = 0; c < 2; ++c) {
-    if (!(filled[c].largest > 0x1p-900)) {
-      net.error = INFINITY;
-      return net;
-    }
-    scales[c] = std::exp2(-std::ilogb(filled[c].largest));
-    net.largest = std::max(net.largest, scales[c] * filled[c].largest);
-    net.error = std::max(net.error, enlarged(scales[c] * filled[c].error));
-  }
-  for (Vector3& p : net.points) p = {scales[0] * p.x, scales[1] * p.y, 0};
+  for (std::size_t i = 0; i < map_->size_; ++i)
+    net.points.push_back({level.values[0][i], level.values[1][i], 0});
+  net.largest = level.largest;
+  net.error = level.off;
   return net;
 }
 
-Patch CornerRings::net(std::size_t level) const { return level == 0 ? *values_ : made(level, false); }
-Patch CornerRings::all_further(std::size_t level) const { return made(level, true); }
+Patch CornerRings::net(std::size_t level) const { return level == 0 ? *values_ : patch_of(levels_[level]); }
+
+CornerRings::Further CornerRings::all_further(std::size_t level) const {
+  Further further{patch_of(levels_[level]), std::nullopt};
+  const Sums& sums = further_[level];
+  further.net.error = enlarged(further.net.error + (map_->conformal_ ? sums.once : sums.twice));
+  if (!map_->conformal_) {
+    further.growth = patch_of(step_of(level));
+    further.growth->error = enlarged(further.growth->error + sums.of_growth);
+  }
+  return further;
+}
 
 }  // namespace snug

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include <snug/geometry/bernstein.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/bezier.h>
@@ -18,218 +20,356 @@
 namespace snug {
 namespace {
 
-// Directions of the layout that are tried, and how many of the most promising are tried in full.
-constexpr int directions = 12, tried_layouts = 4;
-// Edges of the border that are less steep, and lead to its top or bottom, are laid out level there.
-constexpr std::array<double, 3> level_slopes{0, 0.35, 0.6};
 // Levels that a piece is split to bound its coefficients.
-constexpr unsigned polynomial_levels = 2, decay_levels = 6;
-// Of a net that stands for all further rings, against its size: more would hardly do.
+constexpr unsigned polynomial_levels = 2, border_levels = 3, decay_levels = 6;
+// Of a net that stands for all further rings of a map that is conformal, against its size: more would hardly do.
 constexpr double max_net_share = 0.02;
-// Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
-constexpr double layout_grain = 0x1p-20;
+// Rings that are looked at one by one.
+constexpr std::size_t max_rings = 120;
 
-// A sector as it is seen along two vectors: control values (f1, f2, 0), its triangle in the layout, and which
-// of its edges lie on the border of the star: bit k the one from corner k to k + 1.
-struct FlatSector {
-  Patch patch;
-  std::array<Point2, 3> place;
-  unsigned border = 0;
+double largest_of(Point2 a) { return std::max(std::fabs(a.x), std::fabs(a.y)); }
+
+using BezierPoints = std::array<Point2, bezier_count(max_degree)>;
+
+// One of the polynomials of a patch in the plane.
+struct Polynomial {
+  std::size_t degree;
+  BezierPoints points;
+  double error;  // of each number
 };
 
-// Differences along one edge of the parameters' triangle, by Bezier points.
+Polynomial polynomial_of(const Patch& patch, std::size_t part) {
+  const BezierRows& form = patch.kind->form();
+  const std::size_t count = bezier_count(form.degree);
+  Polynomial result{form.degree, {}, form.rows.result_error(patch.largest, patch.error)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3 p = form.rows.apply<Vector3>(part * count + i, patch.points);
+    result.points[i] = {p.x, p.y};
+  }
+  return result;
+}
+
+// Differences along two edges of the parameters' triangle, by Bezier points.
 struct FlatDerivatives {
   std::size_t count = 0;
   std::array<Point2, bezier_count(max_degree - 1)> u, v;
   double largest = 0;
   double error = 0;  // of each number
+
+  explicit FlatDerivatives(const Polynomial& of) {
+    for (std::size_t j = 0; j < of.degree; ++j) {
+      for (std::size_t i = 0; i + j < of.degree; ++i) {
+        const Point2 at = of.points[bezier_index(of.degree, i, j)];
+        u[count] = of.points[bezier_index(of.degree, i + 1, j)] - at;
+        v[count] = of.points[bezier_index(of.degree, i, j + 1)] - at;
+        largest = std::max({largest, largest_of(u[count]), largest_of(v[count])});
+        ++count;
+      }
+    }
+    error = enlarged(2 * of.error + unit_roundoff * largest);
+  }
 };
 
-using BezierPoints = std::array<Point2, bezier_count(max_degree)>;
-
-FlatDerivatives derivatives_of(const BezierPoints& points, std::size_t degree, double error) {
-  FlatDerivatives result;
-  for (std::size_t j = 0; j < degree; ++j) {
-    for (std::size_t i = 0; i + j < degree; ++i) {
-      const Point2 at = points[bezier_index(degree, i, j)];
-      const Point2 u = points[bezier_index(degree, i + 1, j)] - at,
-                   v = points[bezier_index(degree, i, j + 1)] - at;
-      result.u[result.count] = u;
-      result.v[result.count++] = v;
-      result.largest =
-          std::max({result.largest, std::fabs(u.x), std::fabs(u.y), std::fabs(v.x), std::fabs(v.y)});
-    }
-  }
-  result.error = enlarged(2 * error + unit_roundoff * result.largest);
-  return result;
-}
-
-// Condition (ii): the determinant's coefficients, each the sum of those of two orders.
-bool turns_left(const FlatDerivatives& d) {
-  const double limit = enlarged(4 * (2 * d.error * d.largest + d.error * d.error) +
-                                gamma_bound(6) * 4 * d.largest * d.largest);
+// Are all coefficients of the determinant of the one's u and the other one's v, and the other way round, positive?
+bool turns_left(const FlatDerivatives& d, const FlatDerivatives& e) {
+  const double limit = enlarged(8 * (d.error * e.largest + e.error * d.largest + d.error * e.error) +
+                                gamma_bound(8) * 8 * d.largest * e.largest);
   for (std::size_t k = 0; k < d.count; ++k) {
     for (std::size_t l = 0; l <= k; ++l) {
-      if (!(cross(d.u[k], d.v[l]) + cross(d.u[l], d.v[k]) > limit)) return false;
+      const double both = cross(d.u[k], e.v[l]) + cross(d.u[l], e.v[k]);
+      if (!(both + (cross(e.u[k], d.v[l]) + cross(e.u[l], d.v[k])) > limit)) return false;
     }
   }
   return true;
 }
-
-// Axes of the layout, turned: f1 along `along`, f2 a quarter turn on.
-struct Turn {
-  double c = 1, s = 0;
-  [[nodiscard]] double first(Point2 p) const { return c * p.x + s * p.y; }
-  [[nodiscard]] double second(Point2 p) const { return c * p.y - s * p.x; }
-};
-
-// Conditions (i) and (iii) of a polynomial on a triangle with these sides from its corner 0, in the layout.
-bool grows(const FlatDerivatives& d, const Turn& turn, Point2 a, Point2 b) {
-  // |c| + |s| < 1.5.
-  const double error = enlarged(1.5 * d.error + gamma_bound(4) * 1.5 * d.largest), largest = 1.5 * d.largest;
-  const double reach = std::fabs(a.y) + std::fabs(b.y);
-  const double limit = enlarged(reach * error + gamma_bound(4) * reach * (largest + error));
-  for (std::size_t k = 0; k < d.count; ++k) {
-    if (!(b.y * turn.first(d.u[k]) - a.y * turn.first(d.v[k]) > limit)) return false;
-  }
-  return true;
-}
-
-bool rises(const BezierPoints& points, std::size_t degree, std::size_t edge, double error, const Turn& turn,
-           double sign) {
-  const auto at = [&](std::size_t t) {
-    return points[edge == 0   ? bezier_index(degree, t, 0)
-                  : edge == 1 ? bezier_index(degree, degree - t, t)
-                              : bezier_index(degree, 0, degree - t)];
-  };
-  for (std::size_t t = 0; t < degree; ++t) {
-    const Point2 step = at(t + 1) - at(t);
-    const double size = std::max(std::fabs(step.x), std::fabs(step.y));
-    const double limit = enlarged(1.5 * (2 * error + unit_roundoff * size) + gamma_bound(4) * 1.5 * size);
-    if (!(sign * turn.second(step) > limit)) return false;
-  }
-  return true;
-}
-
-// A condition on all pieces of a sector: (ii), or (i) and (iii) for one turn.
-struct Condition {
-  const Turn* turn = nullptr;  // none: (ii)
-};
 
 const CharacteristicMap* map_of(const Kind& kind) {
   return kind.polynomial() ? nullptr : asymptotics_of(kind).characteristic_map();
 }
 
-class SectorCheck {
- public:
-  SectorCheck(const Condition& condition, const std::array<Point2, 3>& place)
-      : condition_(condition), place_(place) {}
+std::size_t corner_of(const CharacteristicMap& tip, const Patch& patch) {
+  return (tip.corner() + patch.first) % 3;
+}
 
-  [[nodiscard]] bool holds(const Patch& patch, unsigned border) {
-    // The star's axes suit corners of its own pieces alone.
-    const CharacteristicMap* const tip = map_of(*patch.kind);
-    if (tip != nullptr) return tip_holds(*tip, patch, border, 1, decay_levels);
-    return holds(patch, border, 1, patch.kind->polynomial() ? 1 : decay_levels);
+// Is the determinant positive all over a patch in the plane?
+class LeftTurn {
+ public:
+  [[nodiscard]] static bool everywhere(const Patch& patch) {
+    return holds(patch, nullptr, patch.kind->polynomial() ? 1 : decay_levels);
   }
 
  private:
-  // `side`: 1, or -1 for a piece that lies in the layout half a turn around.
-  bool holds(const Patch& patch, unsigned border, double side, unsigned levels) {
-    if (patch.kind->polynomial()) return polynomial_holds(patch, border, side, levels);
+  // With `growth`: of the patch and of any number >= 0 of times that.
+  static bool holds(const Patch& patch, const Patch* growth, unsigned levels) {
+    if (patch.kind->polynomial() && coefficients_hold(patch, growth)) return true;
     if (levels == 0) return false;
     if (const CharacteristicMap* tip = map_of(*patch.kind)) {
-      return tip->conformal() && tip_holds(*tip, patch, border, side, levels - 1);
+      return growth == nullptr && tip_holds(*tip, patch, levels - 1);
     }
     for (unsigned child = 0; child < 4; ++child) {
-      if (!child_holds(patch, child, border, side, levels - 1)) return false;
+      if (!child_holds(patch, growth, child, levels - 1)) return false;
     }
     return true;
   }
 
-  bool child_holds(const Patch& patch, unsigned child, unsigned border, double side, unsigned levels) {
+  static bool child_holds(const Patch& patch, const Patch* growth, unsigned child, unsigned levels) {
     const Patch piece = split(patch, child);
-    // The edge across a corner lies inside.
-    const unsigned own = child == 3 ? 0u : border & ~(1u << ((child + 1) % 3));
+    const std::optional<Patch> more = growth != nullptr ? std::optional(split(*growth, child)) : std::nullopt;
     if (piece.kind->polynomial()) levels = std::min(levels, polynomial_levels);
-    return holds(piece, own, child == 3 ? -side : side, levels);
+    return holds(piece, more ? &*more : nullptr, levels);
   }
 
-  bool tip_holds(const CharacteristicMap& tip, const Patch& patch, unsigned border, double side,
-                 unsigned levels) {
-    const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
-    const auto ring_holds = [&](const Patch& net) {
+  static bool tip_holds(const CharacteristicMap& tip, const Patch& patch, unsigned levels) {
+    const auto corner = static_cast<unsigned>(corner_of(tip, patch));
+    const auto ring_holds = [&](const Patch& net, const Patch* growth) {
       for (unsigned child = 0; child < 4; ++child) {
-        if (child != corner && !child_holds(net, child, border, side, levels)) return false;
+        if (child != corner && !child_holds(net, growth, child, levels)) return false;
       }
       return true;
     };
     const CornerRings rings(tip, patch);
-    for (std::size_t ring = 0; ring < rings.count(); ++ring) {
-      const Patch further = rings.all_further(ring);
-      if (further.error < max_net_share * further.largest && ring_holds(further)) return true;
-      if (!ring_holds(rings.net(ring))) return false;
-      border &= ~(1u << ((corner + 1) % 3));
+    for (std::size_t ring = 0; ring < std::min(rings.count(), max_rings); ++ring) {
+      const auto [net, growth] = rings.all_further(ring);
+      if ((growth || net.error < max_net_share * net.largest) && ring_holds(net, growth ? &*growth : nullptr))
+        return true;
+      if (!ring_holds(rings.net(ring), nullptr)) return false;
     }
     return false;
   }
 
-  bool polynomial_holds(const Patch& patch, unsigned border, double side, unsigned levels) {
-    if (coefficients_hold(patch, border, side)) return true;
+  static bool coefficients_hold(const Patch& patch, const Patch* growth) {
+    for (std::size_t part = 0; part < patch.kind->form().parts; ++part) {
+      const FlatDerivatives d(polynomial_of(patch, part));
+      if (!turns_left(d, d)) return false;
+      // Of the growth alone it is 0: all its derivatives are along one vector.
+      if (growth != nullptr && !turns_left(d, FlatDerivatives(polynomial_of(*growth, part)))) return false;
+    }
+    return true;
+  }
+};
+
+// Does a closed curve turn left around a point, all along, and only once? It is added edge by edge.
+class TurnAround {
+ public:
+  // The edge of a patch from a corner to the next one, whose points are moved by `shift`, so that the point is the origin; the exact
+  // ones are this near, beside the patch's own error.
+  [[nodiscard]] bool add(const Patch& patch, unsigned edge, Point2 shift, double error) {
+    shift_ = shift;
+    error_ = error;
+    return add(patch, edge, decay_levels);
+  }
+  // visit(from, to) of each pair of Bezier points next to each other along an edge.
+  // Requires:  a polynomial.
+  template <class Visit>
+  static void each_step(const Patch& patch, unsigned edge, const Visit& visit) {
+    each_curve(patch, edge, [&](const Curve& curve) {
+      for (std::size_t t = 0; t < curve.degree; ++t) visit(curve.points[t], curve.points[t + 1]);
+      return true;
+    });
+  }
+  // Of a closed curve the angle is a multiple of 2 pi.
+  [[nodiscard]] bool once() const { return angle_ < 3 * std::numbers::pi; }
+
+ private:
+  struct Curve {
+    std::size_t degree;
+    std::array<Point2, max_degree + 1> points;
+    double error;
+  };
+
+  bool add(const Patch& patch, unsigned edge, unsigned levels) {
+    if (patch.kind->polynomial()) return add_polynomial(patch, edge, border_levels);
     if (levels == 0) return false;
-    for (unsigned child = 0; child < 4; ++child) {
-      if (!child_holds(patch, child, border, side, levels - 1)) return false;
+    if (const CharacteristicMap* tip = map_of(*patch.kind)) {
+      const auto corner = static_cast<unsigned>(corner_of(*tip, patch));
+      if (corner == edge || corner == (edge + 1) % 3) {
+        if (is_sharp_curve(patch, corner, edge)) return add_sharp_curve(patch, corner, edge);
+        return add_rings(*tip, patch, corner, edge, levels - 1);
+      }
     }
+    return add(split(patch, edge), edge, levels - 1) && add(split(patch, (edge + 1) % 3), edge, levels - 1);
+  }
+
+  bool add_polynomial(const Patch& patch, unsigned edge, unsigned levels) {
+    const double angle = angle_;
+    if (each_curve(patch, edge, [&](const Curve& curve) { return add_curve(moved(curve)); })) return true;
+    angle_ = angle;
+    if (levels == 0) return false;
+    return add_polynomial(split(patch, edge), edge, levels - 1) &&
+           add_polynomial(split(patch, (edge + 1) % 3), edge, levels - 1);
+  }
+
+  // Of a patch of two parts, 0, 1, m and m, 1, 2, the edge 20 runs through m.
+  template <class Visit>
+  static bool each_curve(const Patch& patch, unsigned edge, const Visit& visit) {
+    const std::size_t own = patch.to_kind(edge), parts = patch.kind->form().parts;
+    const auto part_holds = [&](std::size_t part) {
+      const Polynomial all = polynomial_of(patch, part);
+      Curve curve{all.degree, {}, all.error};
+      for (std::size_t t = 0; t <= all.degree; ++t) {
+        curve.points[t] = all.points[own == 0   ? bezier_index(all.degree, t, 0)
+                                     : own == 1 ? bezier_index(all.degree, all.degree - t, t)
+                                                : bezier_index(all.degree, 0, all.degree - t)];
+      }
+      return visit(curve);
+    };
+    if (parts == 1 || own == 0) return part_holds(0);
+    return part_holds(1) && (own == 1 || part_holds(0));
+  }
+
+  [[nodiscard]] Curve moved(Curve curve) const {
+    double largest = 0;
+    for (std::size_t t = 0; t <= curve.degree; ++t) {
+      curve.points[t] = curve.points[t] + shift_;
+      largest = std::max(largest, largest_of(curve.points[t]));
+    }
+    curve.error = enlarged(curve.error + error_ + unit_roundoff * largest);
+    return curve;
+  }
+
+  // The coefficients of det(f, f'), and that the angle is less than pi.
+  bool add_curve(const Curve& f) {
+    const std::size_t d = f.degree;
+    double largest = 0, widest = 0;
+    for (std::size_t i = 0; i <= d; ++i) {
+      largest = std::max(largest, largest_of(f.points[i]));
+      if (i > 0) widest = std::max(widest, largest_of(f.points[i] - f.points[i - 1]));
+    }
+    const double step_error = 2 * f.error + unit_roundoff * widest;
+    const double off = enlarged(2 * (f.error * widest + largest * step_error + f.error * step_error) +
+                                gamma_bound(4 * max_degree) * 2 * largest * widest);
+    for (std::size_t k = 0; k < 2 * d; ++k) {
+      double sum = 0, weights = 0;
+      for (std::size_t i = k < d ? 0 : k + 1 - d; i <= std::min(k, d); ++i) {
+        const double weight = binomial(d, i) * binomial(d - 1, k - i);
+        sum += weight * cross(f.points[i], f.points[k - i + 1] - f.points[k - i]);
+        weights += weight;
+      }
+      if (!(sum > weights * off)) return false;
+    }
+    return add_angle(f.points[0], f.points[d], std::span(f.points).first(d + 1), f.error);
+  }
+
+  // All points on one side of a line through the origin: the angle is that between the ends.
+  bool add_angle(Point2 from, Point2 to, std::span<const Point2> all, double error) {
+    const Point2 middle = from + to;
+    const double reach = std::fabs(middle.x) + std::fabs(middle.y);
+    for (const Point2& p : all) {
+      if (!(dot(middle, p) > reach * (error + gamma_bound(4) * largest_of(p)))) return false;
+    }
+    const double least = std::min(std::sqrt(dot(from, from)), std::sqrt(dot(to, to)));
+    if (!(least > 0x1p10 * error)) return false;
+    angle_ += std::atan2(cross(from, to), dot(from, to)) + 4 * error / least + 0x1p-40;
     return true;
   }
 
-  bool coefficients_hold(const Patch& patch, unsigned border, double side) const {
-    const BezierRows& form = patch.kind->form();
-    const std::size_t count = bezier_count(form.degree);
-    const double error = form.rows.result_error(patch.largest, patch.error);
-    std::array<Point2, 3> corners;  // in the kind's order
-    for (std::size_t k = 0; k < 3; ++k) corners[patch.to_kind(k)] = place_[k];
-    for (std::size_t part = 0; part < form.parts; ++part) {
-      BezierPoints points;
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vector3 p = form.rows.apply<Vector3>(part * count + i, patch.points);
-        points[i] = {p.x, p.y};
+  // Is it the end of a fan at an extraordinary corner? There it is one polynomial: of a boundary, or of a crease.
+  static bool is_sharp_curve(const Patch& patch, unsigned corner, unsigned edge) {
+    const CornerFan& fan = patch.kind->corner(patch.to_kind(corner));
+    return !fan.closed && is_face_edge(patch, edge) && (corner == edge ? fan.before : fan.after) == 0;
+  }
+  // Not the line through a quad that its halves share.
+  static bool is_face_edge(const Patch& patch, unsigned edge) {
+    return patch.kind->rules().triangular() || patch.to_kind(edge) != 2;
+  }
+
+  // Continues its half that is away from the corner.
+  bool add_sharp_curve(const Patch& patch, unsigned corner, unsigned edge) {
+    const unsigned far = corner == edge ? (edge + 1) % 3 : edge;
+    const Patch half = split(patch, far);
+    if (!half.kind->polynomial() || half.kind->form().parts != 1) return false;
+    return each_curve(half, edge, [&](Curve curve) {
+      if (corner == edge) std::reverse(curve.points.begin(), curve.points.begin() + curve.degree + 1);
+      // Point k of the whole curve from the far corner is the half's polar form at 0 and 2.
+      std::array<Point2, max_degree + 1> row = curve.points;
+      for (std::size_t k = 1; k <= curve.degree; ++k) {
+        for (std::size_t t = curve.degree; t >= k; --t) row[t] = 2 * row[t] - row[t - 1];
       }
-      const FlatDerivatives d = derivatives_of(points, form.degree, error);
-      if (condition_.turn == nullptr) {
-        if (!turns_left(d)) return false;
-        continue;
-      }
-      const std::array<Point2, 3> own = part_corners(corners, form.parts, part);
-      const Point2 a = own[1] - own[0], b = own[2] - own[0];
-      if (!grows(d, *condition_.turn, {0, side * a.y}, {0, side * b.y})) return false;
-      for (std::size_t edge = 0; edge < 3; ++edge) {
-        if ((border >> ((edge + patch.first) % 3) & 1u) == 0) continue;
-        if (form.parts == 2 && ((edge == 0 && part == 1) || (edge == 1 && part == 0))) continue;
-        const double dy = side * (corners[(edge + 1) % 3].y - corners[edge].y);
-        if (dy != 0 && !rises(points, form.degree, edge, error, *condition_.turn, dy > 0 ? 1.0 : -1.0))
-          return false;
-      }
+      double largest = 0;
+      for (std::size_t t = 0; t <= curve.degree; ++t)
+        largest = std::max(largest, largest_of(curve.points[t]));
+      const double grown = std::pow(3.0, static_cast<double>(curve.degree));
+      curve.error = enlarged(grown * (curve.error + gamma_bound(3 * max_degree) * largest));
+      curve.points = row;
+      if (corner == edge) std::reverse(curve.points.begin(), curve.points.begin() + curve.degree + 1);
+      return add_split(moved(curve), border_levels);
+    });
+  }
+
+  bool add_split(const Curve& curve, unsigned levels) {
+    const double angle = angle_;
+    if (add_curve(curve)) return true;
+    angle_ = angle;
+    if (levels == 0) return false;
+    Curve first = curve, second = curve;
+    const std::size_t d = curve.degree;
+    for (std::size_t k = 1; k <= d; ++k) {
+      for (std::size_t t = 0; t + k <= d; ++t)
+        second.points[t] = 0.5 * (second.points[t] + second.points[t + 1]);
+      first.points[k] = second.points[0];
     }
-    return true;
+    double largest = 0;
+    for (std::size_t t = 0; t <= d; ++t) largest = std::max(largest, largest_of(curve.points[t]));
+    first.error = second.error = enlarged(curve.error + gamma_bound(2 * max_degree) * largest);
+    return add_split(first, levels - 1) && add_split(second, levels - 1);
   }
 
-  // Two parts are 0, 1, m and m, 1, 2; m is the middle of the edge 02.
-  static std::array<Point2, 3> part_corners(const std::array<Point2, 3>& c, std::size_t parts,
-                                            std::size_t part) {
-    if (parts == 1) return c;
-    const Point2 m{0.5 * c[0].x + 0.5 * c[2].x, 0.5 * c[0].y + 0.5 * c[2].y};
-    return part == 0 ? std::array{c[0], c[1], m} : std::array{m, c[1], c[2]};
+  // Ring by ring, until one net stands for the directions of all that are left, and the hull of control points for where they are.
+  bool add_rings(const CharacteristicMap& tip, Patch at, unsigned corner, unsigned edge, unsigned levels) {
+    const CornerRings rings(tip, at);
+    const unsigned far = corner == edge ? (edge + 1) % 3 : edge;
+    for (std::size_t ring = 0; ring < std::min(rings.count(), max_rings); ++ring) {
+      const auto [net, growth] = rings.all_further(ring);
+      if (add_further(at, split(net, far), growth ? std::optional(split(*growth, far)) : std::nullopt, edge))
+        return true;
+      if (!add(split(at, far), edge, levels)) return false;
+      at = split(at, corner);
+      at.path = {};
+    }
+    return false;
   }
 
-  const Condition& condition_;
-  const std::array<Point2, 3>& place_;
+  bool add_further(const Patch& at, const Patch& net, const std::optional<Patch>& growth, unsigned edge) {
+    if (!net.kind->polynomial()) return false;
+    std::vector<Point2> hull;
+    double largest = 0;
+    for (const Vector3& p : at.points) {
+      hull.push_back({p.x + shift_.x, p.y + shift_.y});
+      largest = std::max(largest, largest_of(hull.back()));
+    }
+    const double error = enlarged(at.error + error_ + unit_roundoff * largest);
+    const auto turns = [&](const Curve& curve) {
+      for (std::size_t t = 0; t < curve.degree; ++t) {
+        const Point2 step = curve.points[t + 1] - curve.points[t];
+        const double step_error = 2 * curve.error + unit_roundoff * largest_of(step);
+        const double off = enlarged(2 * (largest * step_error + error * (largest_of(step) + step_error)) +
+                                    gamma_bound(3) * 2 * largest * largest_of(step));
+        for (const Point2& p : hull) {
+          if (!(cross(p, step) > off)) return false;
+        }
+      }
+      return true;
+    };
+    if (!each_curve(net, edge, turns) || (growth && !each_curve(*growth, edge, turns))) return false;
+    const std::array<Vector3, 3> ends = limit_corners(at);
+    const auto end = [&](unsigned k) { return Point2{ends[k].x, ends[k].y} + shift_; };
+    return add_angle(end(edge), end((edge + 1) % 3), hull,
+                     enlarged(error + at.kind->corner_limits().result_error(at.largest, at.error)));
+  }
+
+  Point2 shift_;
+  double error_ = 0, angle_ = 0;
 };
 
-// The vectors that a star is seen along, and by how much the exact ones that are meant may differ.
-struct Frame {
-  std::array<Vector3, 2> axes;
-  double error = 0;  // largest length of what one of them is off
-};
+// The vectors that a star is seen along.
+using Frame = std::array<Vector3, 2>;
+
+double weight_of(const Frame& frame) {
+  double weight = 0;
+  for (const Vector3& axis : frame)
+    weight = std::max(weight, std::fabs(axis.x) + std::fabs(axis.y) + std::fabs(axis.z));
+  return weight;
+}
 
 // Control values along two vectors.
 Patch seen(const Patch& patch, const Frame& frame) {
@@ -237,18 +377,13 @@ Patch seen(const Patch& patch, const Frame& frame) {
   flat.kind = patch.kind;
   flat.first = patch.first;
   flat.points.reserve(patch.points.size());
-  double weight = 0;
-  for (const Vector3& axis : frame.axes) {
-    weight = std::max(weight, std::fabs(axis.x) + std::fabs(axis.y) + std::fabs(axis.z));
-  }
   for (const Vector3& p : patch.points) {
-    const Vector3 value{dot(frame.axes[0], p), dot(frame.axes[1], p), 0};
+    const Vector3 value{dot(frame[0], p), dot(frame[1], p), 0};
     flat.largest = std::max(flat.largest, max_abs(value));
     flat.points.push_back(value);
   }
-  flat.error = enlarged(weight * (patch.error + gamma_bound(4) * patch.largest) +
-                        spatial_error(patch.largest + patch.error) * frame.error) +
-               4 * underflow_error;
+  flat.error =
+      enlarged(weight_of(frame) * (patch.error + gamma_bound(4) * patch.largest)) + 4 * underflow_error;
   return flat;
 }
 
@@ -266,12 +401,8 @@ class StarCheck {
   [[nodiscard]] bool certainly_injective() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
     if (!make_frame()) return false;
-    for (const StarSector& sector : sectors_) flat_.push_back({seen(*sector.patch, frame_), {}, 0});
-    const Condition determinant;
-    for (FlatSector& sector : flat_) {
-      if (!SectorCheck(determinant, sector.place).holds(sector.patch, 0)) return false;
-    }
-    return monotone();
+    for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_));
+    return std::all_of(flat_.begin(), flat_.end(), LeftTurn::everywhere) && border_turns_once();
   }
 
  private:
@@ -280,9 +411,7 @@ class StarCheck {
     Vector3 normal;
     for (const StarSector& sector : sectors_) {
       const auto [a, b] = spokes_of(sector);
-      if (spokes_.empty() || !closed_) {
-        if (spokes_.empty()) spokes_.push_back(a);
-      }
+      if (spokes_.empty()) spokes_.push_back(a);
       spokes_.push_back(b);
       normal = normal + cross(a, b);
     }
@@ -290,7 +419,7 @@ class StarCheck {
     normal = normalized(normal);
     if (normal == Vector3{}) return false;
     const Vector3 other = std::fabs(normal.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
-    Vector3 x = normalized(cross(other, normal)), y = cross(normal, x);
+    const Vector3 x = normalized(cross(other, normal)), y = cross(normal, x);
     double xx = 0, xy = 0, yy = 0;
     for (const Vector3& spoke : spokes_) {
       const double u = dot(x, spoke), v = dot(y, spoke);
@@ -303,243 +432,91 @@ class StarCheck {
     const double rest = yy - xy * xy / xx;
     if (!(rest > 1e-6 * yy)) return false;
     const double first = 1 / std::sqrt(xx), second = 1 / std::sqrt(rest);
-    frame_.axes = {first * x, second * (y - (xy / xx) * x)};
-    return is_finite(frame_.axes[0]) && is_finite(frame_.axes[1]) && suit_tips();
+    frame_ = {first * x, second * (y - (xy / xx) * x)};
+    return is_finite(frame_[0]) && is_finite(frame_[1]);
   }
 
-  // A corner whose two tangents shrink at different rates wants axes of its own: the second one exactly across
-  // the tangent along the border or crease, where that shrinks less; the first one exactly across the tangent
-  // across these, where that one does.
-  bool suit_tips() {
-    struct Tip {
-      const Patch* patch;
-      std::size_t corner, dominant;  // the corner as the kind counts
-      std::array<Vector3, 2> tangents;
-      std::array<double, 2> errors;  // spatial
+  // Around the centre, unless that is on the border, or around a point that sees all of it.
+  bool border_turns_once() const {
+    return (closed_ && turns_once_around({})) || turns_once_around(seeing_point());
+  }
+
+  // A point to the left of all lines along the border, if there is one: away from that which is nearest, again and again.
+  Point2 seeing_point() const {
+    std::vector<std::array<Point2, 2>> lines;  // a point, and the direction to the left
+    const auto add = [&](Point2 from, Point2 to) {
+      const Point2 d = to - from;
+      const double size = std::sqrt(dot(d, d));
+      if (size > 0) lines.push_back({from, (1 / size) * Point2{-d.y, d.x}});
     };
-    std::vector<Tip> found;
-    std::optional<std::size_t> at;
-    for (std::size_t s = 0; s < sectors_.size(); ++s) {
-      const Patch& patch = *sectors_[s].patch;
-      const CharacteristicMap* limit = map_of(*patch.kind);
-      if (limit == nullptr || limit->conformal()) continue;
-      const std::size_t corner = (limit->corner() + patch.first) % 3;
-      const std::size_t after = (corner + 3 - sectors_[s].centre) % 3;
-      const std::size_t vertex = after == 0 ? SIZE_MAX : (s + after - 1) % spokes_.size();
-      if (at && *at != vertex) return false;
-      at = vertex;
-      Tip tip{&patch, limit->corner(), limit->dominant(), {}, {}};
-      const Stencils& rows = patch.kind->corner_tangents();
-      for (std::size_t t = 0; t < 2; ++t) {
-        const Stencils::Row row = rows.row(2 * tip.corner + t);
-        const double row_error =
-            CharacteristicMap::row_error(row) + gamma_bound(row.sources.size() + 2) * row.abs_sum;
-        tip.tangents[t] = rows.apply<Vector3>(2 * tip.corner + t, patch.points);
-        tip.errors[t] =
-            spatial_error(enlarged(row_error * patch.largest + (row.abs_sum + row_error) * patch.error));
-        if (!(length(tip.tangents[t]) > 0x1p20 * tip.errors[t])) return false;
+    each_border_edge([&](std::size_t s, unsigned edge) {
+      const std::array<Vector3, 3> ends = limit_corners(flat_[s]);
+      const Vector3 c = ends[sectors_[s].centre];
+      const auto at = [&](const Vector3& p) { return Point2{p.x - c.x, p.y - c.y}; };
+      add(at(ends[edge]), at(ends[(edge + 1) % 3]));
+      if (flat_[s].kind->polynomial()) {
+        TurnAround::each_step(flat_[s], edge, [&](Point2 p, Point2 q) {
+          add(at({p.x, p.y, 0}), at({q.x, q.y, 0}));
+        });
       }
-      found.push_back(tip);
+      return true;
+    });
+    Point2 mean, point;
+    for (const auto& line : lines) mean = mean + (1 / static_cast<double>(lines.size())) * line[0];
+    double most = -INFINITY, step = 0.3;
+    Point2 at = mean;
+    for (int i = 0; i < 60; ++i, step *= 0.9) {
+      double least = INFINITY;
+      Point2 away;
+      for (const auto& [on, left] : lines) {
+        const double distance = dot(left, at - on);
+        if (distance < least) {
+          least = distance;
+          away = left;
+        }
+      }
+      if (least > most) {
+        most = least;
+        point = at;
+      }
+      at = at + step * away;
     }
-    if (found.empty()) return true;
-    // All sectors around one vertex have the same tangent along its border or crease, but for its length; the
-    // same one across it only on one side of a crease. Around the vertex a side ends once.
-    std::vector<const Tip*> across;
-    for (const Tip& tip : found) {
-      if (tip.dominant == 1) across.push_back(&tip);
-    }
-    std::size_t ends = 0;
-    for (std::size_t i = 0; i < across.size(); ++i) {
-      const CornerFan& fan = across[i]->patch->kind->corner(across[i]->corner);
-      const Tip& next = *across[(i + 1) % across.size()];
-      if (fan.faces() < 3) return false;
-      if (!beside(fan, next.patch->kind->corner(next.corner))) ++ends;
-    }
-    if (ends > 1) return false;
-    // Dual to the tangents.
-    const std::array<Vector3, 2>& tangents = (across.empty() ? &found.front() : across.front())->tangents;
-    const Vector3 normal = cross(tangents[0], tangents[1]);
-    const Vector3 x = normalized(cross(tangents[1], normal)), y = normalized(cross(normal, tangents[0]));
-    if (x == Vector3{} || y == Vector3{}) return false;
-    double xx = 0, yy = 0;
-    for (const Vector3& spoke : spokes_) {
-      xx += dot(x, spoke) * dot(x, spoke);
-      yy += dot(y, spoke) * dot(y, spoke);
-    }
-    if (!(xx > 0) || !(yy > 0)) return false;
-    frame_.axes = {(1 / std::sqrt(xx)) * x, (1 / std::sqrt(yy)) * y};
-    if (dot(cross(frame_.axes[0], frame_.axes[1]), cross_of_spokes()) < 0) frame_.axes[0] = -frame_.axes[0];
-    turned_ = false;
-    // |n . t| / |t| of the exact tangent t: the exact axis that is meant is this far from n.
-    for (const Tip& tip : found) {
-      const Vector3& axis = frame_.axes[1 - tip.dominant];
-      const Vector3& tangent = tip.tangents[tip.dominant];
-      const double off = tip.errors[tip.dominant] / length(tangent);
-      frame_.error = std::max(frame_.error, enlarged(std::fabs(dot(axis, normalized(tangent))) +
-                                                     length(axis) * (2 * off + gamma_bound(32))));
+    return point;
+  }
+
+  // visit(sector, edge) of each, counter-clockwise; the centre of an open star is a point of its border, too.
+  template <class Visit>
+  bool each_border_edge(const Visit& visit) const {
+    for (std::size_t s = 0; s < sectors_.size(); ++s) {
+      const auto c = static_cast<unsigned>(sectors_[s].centre);
+      if (!closed_ && s == 0 && !visit(s, c)) return false;
+      if (!visit(s, (c + 1) % 3)) return false;
+      if (!closed_ && s + 1 == sectors_.size() && !visit(s, (c + 2) % 3)) return false;
     }
     return true;
   }
 
-  // Are sectors next to each other on the same side of all creases, or halves of the same quad? With three
-  // faces and more on a side no last face of one side looks like the neighbour of the first one of the other.
-  static bool beside(const CornerFan& a, const CornerFan& b) {
-    return a == b || (a.before + 1 == b.before && a.after == b.after + 1) ||
-           (b.before + 1 == a.before && b.after == a.after + 1);
-  }
-
-  Vector3 cross_of_spokes() const {
-    Vector3 normal;
-    for (const StarSector& sector : sectors_) {
-      const auto [a, b] = spokes_of(sector);
-      normal = normal + cross(a, b);
-    }
-    return normal;
-  }
-
-  // Places of the spokes' ends, turned; edges near the top and the bottom less steep than `slope` are level.
-  // False for no layout: the border's heights must rise once and fall once.
-  bool lay_out(const Turn& turn, double slope, std::vector<Point2>& ring) const {
-    double largest = 0;
-    ring.clear();
-    for (const Vector3& spoke : spokes_) {
-      const Point2 p{dot(frame_.axes[0], spoke), dot(frame_.axes[1], spoke)};
-      ring.push_back({turn.first(p), turn.second(p)});
-      largest = std::max({largest, std::fabs(ring.back().x), std::fabs(ring.back().y)});
-    }
-    if (!(largest > 1e-100) || !(largest < 1e100)) return false;
-    const double grain = std::exp2(std::ceil(std::log2(largest))) * layout_grain;
-    for (Point2& p : ring) p = {grain * std::round(p.x / grain), grain * std::round(p.y / grain)};
-    // The centre of an open star is a point of its border, too.
-    if (!closed_) ring.push_back({});
-    if (slope > 0) {
-      make_level(slope, 1, ring);
-      make_level(slope, -1, ring);
-    }
-    const bool shaped = rises_once(ring);
-    if (!closed_) ring.pop_back();
-    for (std::size_t s = 0; s < sectors_.size(); ++s) {
-      if (!(cross(ring[s], ring[(s + 1) % ring.size()]) > 0)) return false;
-    }
-    return shaped;
-  }
-
-  // Raises (for side 1) what the top is reached from by edges that are less steep. The centre stays.
-  void make_level(double slope, double side, std::vector<Point2>& border) const {
-    const std::size_t n = border.size();
-    std::size_t top = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (side * border[i].y > side * border[top].y) top = i;
-    }
-    double height = border[top].y;
-    std::vector<std::size_t> raised;
-    for (const std::size_t step : {std::size_t{1}, n - 1}) {
-      for (std::size_t k = 0, at = top; k + 2 < n; ++k) {
-        const std::size_t next = (at + step) % n;
-        const double dx = border[next].x - border[at].x, dy = border[next].y - border[at].y;
-        if (std::fabs(dy) >= slope * std::hypot(dx, dy)) break;
-        raised.push_back(next);
-        at = next;
-      }
-    }
-    if (!closed_ && (top == n - 1 || std::find(raised.begin(), raised.end(), n - 1) != raised.end()))
-      height = 0;
-    border[top].y = height;
-    for (const std::size_t i : raised) border[i].y = height;
-  }
-
-  // Once around, do the heights go up once and down once, with level edges at the top and the bottom alone?
-  static bool rises_once(const std::vector<Point2>& border) {
-    const std::size_t n = border.size();
-    double least = INFINITY, most = -INFINITY;
-    for (const Point2& p : border) {
-      least = std::min(least, p.y);
-      most = std::max(most, p.y);
-    }
-    std::size_t turns = 0;
-    double before = 0;  // the last direction but level; of the first edge it is found going around
-    for (std::size_t i = 0; i < 2 * n; ++i) {
-      const double from = border[i % n].y, to = border[(i + 1) % n].y;
-      if (from == to) {
-        if (from != least && from != most) return false;
-        continue;
-      }
-      const double now = to > from ? 1 : -1;
-      if (i >= n && now != before) ++turns;
-      before = now;
-    }
-    return turns == 2;
-  }
-
-  // The least slope of an edge of the border that is not level.
-  double steepness(const std::vector<Point2>& ring) const {
-    double least = 1;
-    const auto add = [&](Point2 a, Point2 b) {
-      if (a.y != b.y) least = std::min(least, std::fabs(b.y - a.y) / std::hypot(b.x - a.x, b.y - a.y));
-    };
-    for (std::size_t s = 0; s < sectors_.size(); ++s) add(ring[s], ring[(s + 1) % ring.size()]);
-    if (!closed_) {
-      add({}, ring.front());
-      add({}, ring.back());
-    }
-    return least;
-  }
-
-  // By so many parts of a half turn; exactly, by quarters.
-  static Turn turn_of(int parts) {
-    constexpr std::array<Turn, 4> quarters{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-    if (parts % (directions / 2) == 0) return quarters[static_cast<std::size_t>(2 * parts / directions)];
-    const double angle = std::numbers::pi * parts / directions;
-    return {std::cos(angle), std::sin(angle)};
-  }
-
-  bool monotone() {
-    struct Trial {
-      double steepness;
-      Turn turn;
-      double slope;
-    };
-    std::vector<Trial> trials;
-    std::vector<Point2> ring;
-    for (const double slope : level_slopes) {
-      for (int d = 0; d < 2 * directions; ++d) {
-        if (!turned_ && d % (directions / 2) != 0) continue;
-        const Turn turn = turn_of(d);
-        // Level edges are not where they are seen: a larger slope counts against the layout.
-        if (lay_out(turn, slope, ring)) trials.push_back({steepness(ring) - 0.5 * slope, turn, slope});
-      }
-    }
-    std::stable_sort(trials.begin(), trials.end(),
-                     [](const Trial& a, const Trial& b) { return a.steepness > b.steepness; });
-    if (trials.size() > tried_layouts) trials.resize(tried_layouts);
-    return std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
-      static_cast<void>(lay_out(trial.turn, trial.slope, ring));
-      return monotone(trial.turn, ring);
+  // By the offset of a point from the centre.
+  bool turns_once_around(Point2 point) const {
+    TurnAround turn;
+    const Patch& first = *sectors_.front().patch;
+    const Vector3 centre = limit_corners(first)[sectors_.front().centre];
+    const bool turns = each_border_edge([&](std::size_t s, unsigned edge) {
+      const Vector3 offset = sectors_[s].patch->origin - first.origin;
+      const Vector3 moved = offset - centre;
+      const Point2 shift = Point2{dot(frame_[0], moved), dot(frame_[1], moved)} - point;
+      const double error = enlarged(weight_of(frame_) * gamma_bound(8) * (max_abs(offset) + max_abs(centre)) +
+                                    gamma_bound(2) * (largest_of(shift) + largest_of(point)));
+      return turn.add(flat_[s], edge, shift, error);
     });
-  }
-
-  bool monotone(const Turn& turn, const std::vector<Point2>& ring) {
-    const std::size_t n = sectors_.size();
-    for (std::size_t s = 0; s < n; ++s) {
-      const std::size_t c = sectors_[s].centre;
-      flat_[s].place[c] = {};
-      flat_[s].place[(c + 1) % 3] = ring[s];
-      flat_[s].place[(c + 2) % 3] = ring[(s + 1) % ring.size()];
-      flat_[s].border = 1u << ((c + 1) % 3);
-      if (!closed_ && s == 0) flat_[s].border |= 1u << c;
-      if (!closed_ && s + 1 == n) flat_[s].border |= 1u << ((c + 2) % 3);
-    }
-    const Condition condition{&turn};
-    return std::all_of(flat_.begin(), flat_.end(), [&](const FlatSector& sector) {
-      return SectorCheck(condition, sector.place).holds(sector.patch, sector.border);
-    });
+    return turns && turn.once();
   }
 
   std::span<const StarSector> sectors_;
-  bool closed_, turned_ = true;
+  bool closed_;
   std::vector<Vector3> spokes_;  // closed: one a sector; open: one more
   Frame frame_;
-  std::vector<FlatSector> flat_;
+  std::vector<Patch> flat_;
 };
 
 }  // namespace

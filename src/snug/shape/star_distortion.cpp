@@ -34,8 +34,6 @@ constexpr double widening = 1.3;
 // Eigenvalues are known this well, and equal ones are equal up to this.
 constexpr double eigenvalue_error = 1e-10, same_eigenvalue = 1e-9;
 
-Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
-Point2 operator*(double s, Point2 a) { return {s * a.x, s * a.y}; }
 double size_of(Point2 a) { return std::hypot(a.x, a.y); }
 
 using Places = std::array<Point2, 3>;
