@@ -2,13 +2,18 @@
 
 #include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/corner_rings.h>
+#include <snug/surface/limit_surface.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
+#include <memory>
+#include <numbers>
 #include <random>
+#include <set>
 #include <vector>
 
 namespace snug::corner_rings_test {
@@ -30,16 +35,13 @@ Patch random_values(const Kind& kind, std::mt19937_64& random) {
   return patch;
 }
 
+// Both values, less their means.
 std::vector<double> centred(const Patch& patch) {
   std::vector<double> v;
-  for (const bool second : {false, true}) {
-    double low = INFINITY, high = -INFINITY;
-    for (const Vector3& p : patch.points) {
-      low = std::min(low, second ? p.y : p.x);
-      high = std::max(high, second ? p.y : p.x);
-    }
-    for (const Vector3& p : patch.points) v.push_back((second ? p.y : p.x) - 0.5 * (low + high));
-  }
+  Vector3 mean;
+  for (const Vector3& p : patch.points) mean = mean + (1 / static_cast<double>(patch.points.size())) * p;
+  for (const Vector3& p : patch.points) v.push_back(p.x - mean.x);
+  for (const Vector3& p : patch.points) v.push_back(p.y - mean.y);
   return v;
 }
 
@@ -72,9 +74,10 @@ Fit fit(std::vector<double> values, const std::vector<double>& by) {
 }
 
 // Down to where a level is hardly more than rounding.
-void expect_holds(const Kind& kind, const CharacteristicMap& limit, std::mt19937_64& random) {
+void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
+  const Kind& kind = *decay.kind;
   const Patch values = random_values(kind, random);
-  const CornerRings rings(limit, values);
+  const CornerRings rings(decay, values);
   Patch at = values;
   std::vector<Patch> direct;
   for (std::size_t level = 0; level < std::min<std::size_t>(rings.count(), 25); ++level) {
@@ -82,7 +85,7 @@ void expect_holds(const Kind& kind, const CharacteristicMap& limit, std::mt19937
     for (const Vector3& p : at.points) size = std::max(size, max_abs(p - at.points[0]));
     if (!(size > 1e9 * at.error)) break;
     direct.push_back(at);
-    at = split(at, static_cast<unsigned>((limit.corner() + at.first) % 3));
+    at = split(at, static_cast<unsigned>((decay.corner + at.first) % 3));
   }
   ASSERT_GT(direct.size(), std::min<std::size_t>(rings.count(), 8) - 1);
   // What the levels are scaled by.
@@ -96,7 +99,7 @@ void expect_holds(const Kind& kind, const CharacteristicMap& limit, std::mt19937
   }
   for (std::size_t level = 0; level < direct.size(); ++level) {
     const auto [net, growth] = rings.all_further(level);
-    EXPECT_EQ(growth.has_value(), !limit.conformal());
+    EXPECT_EQ(growth.has_value(), decay.growth != RingDecay::Growth::none);
     if (!(net.error < 0.2 * net.largest)) continue;
     for (std::size_t further = level; further < direct.size(); ++further) {
       std::vector<double> rest = centred(direct[further]);
@@ -152,7 +155,7 @@ TEST(corner_rings, holds_all_levels_inside) {
       if (limit == nullptr) continue;
       ++found;
       EXPECT_TRUE(limit->conformal());
-      for (int i = 0; i < 5; ++i) expect_holds(kind, *limit, random);
+      for (int i = 0; i < 5; ++i) expect_holds(limit->decay(), random);
     }
   }
   RecordProperty("kinds", static_cast<int>(found));
@@ -185,8 +188,111 @@ TEST(corner_rings, holds_all_levels_at_boundaries) {
         if (limit == nullptr) continue;
         EXPECT_FALSE(limit->conformal());
         EXPECT_EQ(limit->dominant(), faces < 3 ? 0U : 1U);
-        for (int i = 0; i < 5; ++i) expect_holds(kind, *limit, random);
+        for (int i = 0; i < 5; ++i) expect_holds(limit->decay(), random);
       }
+    }
+  }
+}
+
+// Vertex 0 of n faces, three rings more around it; `edges` of the spokes are sharp, from it outwards. On the border: half of a turn.
+ControlMesh fan(std::uint32_t n, bool triangles, bool border, std::uint32_t edges) {
+  ControlMesh mesh;
+  mesh.points.push_back({0, 0, 0});
+  const std::uint32_t steps = triangles ? n : 2 * n, around = border ? steps + 1 : steps;
+  const auto next = [&](std::uint32_t i) { return border ? i + 1 : (i + 1) % steps; };
+  const auto add = [&](std::initializer_list<std::uint32_t> corners) {
+    mesh.add_face(std::vector<VertexId>(corners.begin(), corners.end()));
+  };
+  constexpr std::uint32_t rings = 4;
+  for (std::uint32_t ring = 0; ring < rings; ++ring) {
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const double angle = std::numbers::pi * (border ? 1 : 2) * i / steps;
+      mesh.points.push_back({(ring + 1) * std::cos(angle), (ring + 1) * std::sin(angle), 0});
+    }
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (triangles) {
+      add({0, 1 + i, 1 + next(i)});
+    } else {
+      add({0, 1 + 2 * i, 2 + 2 * i, 1 + next(2 * i + 1)});
+    }
+  }
+  for (std::uint32_t ring = 0; ring + 1 < rings; ++ring) {
+    for (std::uint32_t i = 0; i < steps; ++i) {
+      const std::uint32_t a = 1 + ring * around + i, b = 1 + ring * around + next(i);
+      if (triangles) {
+        add({a, a + around, b + around});
+        add({a, b + around, b});
+      } else {
+        add({a, a + around, b + around, b});
+      }
+    }
+  }
+  for (std::uint32_t e = 0; e < edges; ++e) {
+    const std::uint32_t first = 1 + e * (triangles ? 1 : 2);
+    for (std::uint32_t ring = 0; ring < rings; ++ring) {
+      const std::uint32_t here = first + ring * around;
+      mesh.tags.creases.push_back({VertexId(ring == 0 ? 0 : here - around), VertexId(here), 10});
+    }
+  }
+  if (border) mesh.tags.corners.push_back({VertexId(0), 10});
+  return mesh;
+}
+
+// All kinds at vertex 0 that are found to come again, after some levels.
+std::size_t expect_all_hold(const ControlMesh& mesh, Scheme scheme, std::mt19937_64& random) {
+  const LimitSurface surface(mesh, {.scheme = scheme}, std::make_shared<BoundsCache>());
+  std::set<const Kind*> seen;
+  for (std::uint32_t p = 0; p < surface.patch_count(); ++p) {
+    Patch patch = surface.patch(PatchId(p));
+    for (int level = 0; level < 3; ++level) patch = split(patch, 0);
+    if (patch.kind->polynomial() || !seen.insert(patch.kind).second) continue;
+    const RingDecay* decay = asymptotics_of(*patch.kind).ring_decay();
+    SCOPED_TRACE(std::string(name_of(scheme)) + " patch " + std::to_string(p));
+    if (decay == nullptr) {
+      seen.erase(patch.kind);
+      continue;
+    }
+    for (int i = 0; i < 5; ++i) expect_holds(*decay, random);
+  }
+  return seen.size();
+}
+
+// Where the rows are found, not derived: darts, sharp corners of two faces and more, and Midedge at triangles.
+TEST(corner_rings, holds_all_levels_by_rows_that_are_found) {
+  std::mt19937_64 random(3);
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    for (std::uint32_t n = 3; n <= 12; ++n) {
+      EXPECT_GT(expect_all_hold(fan(n, scheme == Scheme::loop, false, 1), scheme, random), 2U)
+          << name_of(scheme) << " dart of " << n;
+    }
+    for (std::uint32_t n = 2; n <= 5; ++n) {
+      const std::size_t found = expect_all_hold(fan(n, scheme == Scheme::loop, true, 0), scheme, random);
+      if (scheme == Scheme::loop || n <= 3) {
+        EXPECT_GT(found, 0U) << name_of(scheme) << " corner of " << n;
+      }
+    }
+  }
+  ControlMesh octahedron;
+  octahedron.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const VertexId a(i), b((i + 1) % 4);
+    octahedron.add_face(std::vector<VertexId>{a, b, VertexId(4)});
+    octahedron.add_face(std::vector<VertexId>{b, a, VertexId(5)});
+  }
+  EXPECT_GT(expect_all_hold(octahedron, Scheme::midedge, random), 0U);
+}
+
+// Numbers that are whole multiples of 2^-12 are taken for exact ones. So no weight that is not rational may look so: those of Loop's
+// vertices, of all valences but 3, 4 and 6; rational ones have small denominators.
+TEST(corner_rings, takes_no_irrational_weight_for_an_exact_one) {
+  for (int n = 5; n <= 1000; ++n) {
+    if (n == 6) continue;
+    const double c = 3 + 2 * std::cos(2 * std::numbers::pi / n);
+    const double a = 0.625 - c * c / 64;
+    for (const double weight : {a, 1 - a, a / n}) {
+      const double by = 4096 * weight;
+      EXPECT_GT(std::fabs(by - std::round(by)), 1e-10) << n;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
 #include <snug/shape/control_values.h>
+#include <snug/shape/matrix_power.h>
 
 namespace snug {
 namespace {
@@ -18,73 +19,6 @@ constexpr int max_iterations = 4000;
 
 // A bound that is not proved by much is of no use.
 constexpr double enough_contraction = 0.95;
-
-// An upper bound of the largest distance of two rows in sum, halved: by how much extents may grow.
-double growth_of(const std::vector<double>& matrix, std::size_t size) {
-  double widest = 0;
-  for (std::size_t a = 0; a < size; ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      double sum = 0;
-      for (std::size_t c = 0; c < size; ++c) {
-        sum += std::fabs(matrix[a * size + c] - matrix[b * size + c]);
-      }
-      widest = std::max(widest, sum);
-    }
-  }
-  return enlarged(0.5 * widest);
-}
-
-double largest_sum(const std::vector<double>& matrix, std::size_t size) {
-  double largest = 0;
-  for (std::size_t r = 0; r < size; ++r) {
-    double sum = 0;
-    for (std::size_t c = 0; c < size; ++c) sum += std::fabs(matrix[r * size + c]);
-    largest = std::max(largest, sum);
-  }
-  return enlarged(largest * (1 + gamma_bound(size)));
-}
-
-// Powers of a square matrix. `sum`: largest absolute sum of a row; `error`: largest sum of a row's errors.
-struct Power {
-  std::size_t size;
-  std::vector<double> matrix;
-  double sum, error;
-
-  Power(const Stencils& rows, std::size_t columns)
-      : size(columns), matrix(columns * columns, 0.0), sum(rows.max_abs_sum()) {
-    for (std::size_t r = 0; r < size; ++r) {
-      const Stencils::Row row = rows.row(r);
-      for (std::size_t i = 0; i < row.sources.size(); ++i)
-        matrix[r * size + row.sources[i]] += row.weights[i];
-    }
-    error = enlarged(rows.max_error() + gamma_bound(8) * sum);
-  }
-
-  // Takes one row off all rows, here and, up to some row, in all powers: no extent sees that. Off the limit's row, so that powers
-  // shrink as what is left does.
-  void remove(const Stencils::Row& row) {
-    for (std::size_t r = 0; r < size; ++r) {
-      for (std::size_t i = 0; i < row.sources.size(); ++i)
-        matrix[r * size + row.sources[i]] -= row.weights[i];
-    }
-    error = enlarged(error + gamma_bound(4) * (sum + row.abs_sum));
-    sum = largest_sum(matrix, size);
-  }
-
-  void square() {
-    std::vector<double> product(size * size, 0.0);
-    for (std::size_t r = 0; r < size; ++r) {
-      for (std::size_t k = 0; k < size; ++k) {
-        const double weight = matrix[r * size + k];
-        if (weight == 0) continue;
-        for (std::size_t c = 0; c < size; ++c) product[r * size + c] += weight * matrix[k * size + c];
-      }
-    }
-    error = enlarged(error * (2 * sum + error) + gamma_bound(size + 2) * sum * sum);
-    sum = largest_sum(product, size);
-    matrix = std::move(product);
-  }
-};
 
 bool suitable(const Kind& kind, std::size_t corner) {
   const CornerFan& fan = kind.corner(corner);
@@ -112,7 +46,7 @@ double CharacteristicMap::projection() const {
 
 // From (W A)_c = l W_c, where W_c is large.
 bool CharacteristicMap::find_eigenvalues(const Kind& kind, const Stencils& step) {
-  const Power a(step, size_);
+  const MatrixPower a(step, size_);
   for (std::size_t t = 0; t < 2; ++t) {
     const Stencils::Row row = kind.corner_tangents().row(2 * corner_ + t);
     rows_[t].assign(size_, 0.0);
@@ -213,7 +147,7 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
   const double exact = enlarged(mixing * (extents_[0] + extents_[1]));
 
   const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
-  Power power(step, size_);
+  MatrixPower power(step, size_);
   power.remove(kind_->corner_limits().row(corner_));
   double scale = least;  // least^(2^i), a lower bound
   std::array<double, 2> shrink{eigenvalues_[0].lower, eigenvalues_[1].lower};
@@ -236,7 +170,7 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
     }
     // x powers * directions is rounded itself, but any X does: what counts is its product with W.
     const double contraction =
-        enlarged(growth_of(rest, size_) + power.error + projected_error * (1 + 0x1p-40) +
+        enlarged(growth_of_rows(rest, size_) + power.error + projected_error * (1 + 0x1p-40) +
                  gamma_bound(8) * (power.sum + projected));
     const double factor = enlarged(contraction / scale);
     if (factor < enough_contraction) {
@@ -294,6 +228,19 @@ std::optional<CharacteristicMap> make_characteristic_map(const Kind& kind) {
     return std::nullopt;
   }
   return std::nullopt;
+}
+
+RingDecay CharacteristicMap::decay() const {
+  RingDecay decay{kind_, corner_, eigenvalues_[conformal_ ? 0 : 1 - dominant_]};
+  if (!conformal_) {
+    decay.ratio = eigenvalues_[dominant_] / decay.least;
+    decay.growth = RingDecay::Growth::of_one;
+  }
+  decay.period = contraction_.period;
+  decay.factor = contraction_.factor;
+  decay.most = contraction_.growth;
+  decay.seen = projection();
+  return decay;
 }
 
 // Upper bound of the extents of A^j r over the least eigenvalue's powers: some powers are taken, the others

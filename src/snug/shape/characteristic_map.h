@@ -8,6 +8,7 @@
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/patch.h>
+#include <snug/shape/ring_decay.h>
 
 namespace snug {
 
@@ -45,10 +46,10 @@ class CharacteristicMap {
   /// which one is at most the error of `net` and the other lies between those of `net` and of `dominant`.
   /// Source:    derivations/normals.md, "At extraordinary corners".
   [[nodiscard]] LimitNets limit_nets(const Patch& patch) const;
+  [[nodiscard]] RingDecay decay() const;
 
  private:
   friend std::optional<CharacteristicMap> make_characteristic_map(const Kind& kind);
-  friend class CornerRings;
   // How much of each direction control values have, and what the exact shares differ by at most.
   struct Shares {
     std::array<double, 2> m, off;

@@ -114,6 +114,11 @@ const CharacteristicMap* CornerAsymptotics::characteristic_map() const {
   return map ? &*map : nullptr;
 }
 
+const RingDecay* CornerAsymptotics::ring_decay() const {
+  const auto& decay = decay_.get([&] { return make_ring_decay(kind_, characteristic_map()); });
+  return decay ? &*decay : nullptr;
+}
+
 const CornerForms* CornerAsymptotics::forms() const {
   const auto& forms = forms_.get([&] { return make_corner_forms(kind_, area_factor()); });
   return forms ? &*forms : nullptr;

@@ -21,6 +21,9 @@ class CornerAsymptotics {
   /// Null where there is none, see make_characteristic_map().
   [[nodiscard]] const CharacteristicMap* characteristic_map() const;
 
+  /// Null where there is none, see make_ring_decay().
+  [[nodiscard]] const RingDecay* ring_decay() const;
+
   // Upper bounds by d, the diagonal of the box around the control points, for patches and for whole quads that
   // patches are halves of. Infinite where none is found, which happens to Midedge alone, beside a face of very many
   // corners. Cost: that of the kind's step, and some dense products.
@@ -40,6 +43,7 @@ class CornerAsymptotics {
 
   const Kind& kind_;
   Lazy<std::optional<CharacteristicMap>> map_;
+  Lazy<std::optional<RingDecay>> decay_;
   Lazy<std::optional<CornerForms>> forms_;
   std::array<Lazy<double>, 2> factors_;  // of each Measure
 };

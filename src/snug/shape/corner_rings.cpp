@@ -24,10 +24,8 @@ void centre(std::vector<double>& values) {
 
 }  // namespace
 
-CornerRings::CornerRings(const CharacteristicMap& map, const Patch& values) : map_(&map), values_(&values) {
-  const Interval least = map.conformal_ ? map.eigenvalues_[0] : map.eigenvalues_[1 - map.dominant_];
-  least_off_ = enlarged((least.upper - least.lower) / least.lower);
-  if (!map.conformal_) ratio_ = map.eigenvalues_[map.dominant_] / least;
+CornerRings::CornerRings(const RingDecay& decay, const Patch& values) : decay_(&decay), values_(&values) {
+  least_off_ = enlarged((decay.least.upper - decay.least.lower) / decay.least.lower);
   Level first;
   for (std::size_t c = 0; c < 2; ++c) {
     for (const Vector3& p : values.points) first.values[c].push_back(c == 0 ? p.x : p.y);
@@ -37,26 +35,28 @@ CornerRings::CornerRings(const CharacteristicMap& map, const Patch& values) : ma
   first.off = enlarged(values.error + gamma_bound(2) * values.largest);
   all_off_ = growing_off_ = first.off;
   levels_.push_back(std::move(first));
-  descend(middle(least));
-  descend(middle(least));
+  descend();
+  descend();
   std::vector<double> parts;
-  for (; parts.size() < max_rings; descend(middle(least))) {
+  for (; parts.size() < max_rings; descend()) {
     const Lasting last = lasting(parts.size());
     parts.push_back(enlarged(last.extent + last.off));
     // Beyond, roundings are all that is seen, which grow where one eigenvalue is larger; or there is little, for a whole period.
-    const std::size_t period = map.contraction_.period;
+    const std::size_t period = decay.period;
     const double before = parts.size() < period ? INFINITY : parts[parts.size() - period];
     if (before < small_rest * levels_[0].largest || before < 4 * last.off ||
-        (!map.conformal_ && last.extent < last.off))
+        (decay.growth != RingDecay::Growth::none && last.extent < last.off))
       break;
   }
   add_up(std::move(parts));
 }
 
-// One level on, over a number near the eigenvalue: levels are scaled anyhow. An error is as large, later, as the parts of it that grow, and growth_ times the rest.
-void CornerRings::descend(double least) {
-  const CharacteristicMap& map = *map_;
-  const Stencils& step = map.kind_->children()[map.corner_].stencils;
+// One level on, over a number near the eigenvalue: levels are scaled anyhow. Of an error what the rows see grows as they do.
+void CornerRings::descend() {
+  const RingDecay& decay = *decay_;
+  const Stencils& step = decay.kind->children()[decay.corner].stencils;
+  const double least = middle(decay.least);
+  const std::size_t size = values_->points.size();
   const Level& before = levels_.back();
   Level next;
   const double largest = before.largest / least;
@@ -67,11 +67,13 @@ void CornerRings::descend(double least) {
     next.largest = std::max(next.largest, largest_of(next.values[c]));
   }
   const double off =
-      (step.max_error() + gamma_bound(map.size_ + 6) * (step.max_abs_sum() + step.max_error())) * largest;
+      (step.max_error() + gamma_bound(size + 6) * (step.max_abs_sum() + step.max_error())) * largest;
   all_off_ = enlarged(all_off_ + off);
-  growing_off_ = enlarged(ratio_.upper * growing_off_ + off);
-  const double along = map.projection();
-  next.off = enlarged(map.contraction_.growth * (1 + along) * all_off_ + along * growing_off_);
+  growing_off_ = enlarged(decay.ratio.upper * growing_off_ + off);
+  // Chains grow as the number of steps does.
+  const bool chained = decay.growth != RingDecay::Growth::none && decay.ratio == Interval{1};
+  const double steps = chained ? 1 + 8 * static_cast<double>(levels_.size()) : 1;
+  next.off = enlarged(decay.most * (1 + decay.seen) * all_off_ + decay.seen * steps * growing_off_);
   levels_.push_back(std::move(next));
 }
 
@@ -80,7 +82,7 @@ CornerRings::Level CornerRings::step_of(std::size_t level) const {
   const Level &from = levels_[level], &to = levels_[level + 1];
   Level step;
   for (std::size_t c = 0; c < 2; ++c) {
-    for (std::size_t i = 0; i < map_->size_; ++i)
+    for (std::size_t i = 0; i < values_->points.size(); ++i)
       step.values[c].push_back(to.values[c][i] - from.values[c][i]);
     centre(step.values[c]);
     step.largest = std::max(step.largest, largest_of(step.values[c]));
@@ -93,29 +95,30 @@ CornerRings::Level CornerRings::step_of(std::size_t level) const {
 CornerRings::Lasting CornerRings::lasting(std::size_t level) const {
   const Level step = step_of(level);
   double widest = 0;
-  if (map_->conformal_) {
+  if (decay_->growth == RingDecay::Growth::none) {
     for (const auto& values : step.values) widest = std::max(widest, extent(values));
     return {widest, step.off};
   }
   const Level next = step_of(level + 1);
-  const double ratio = middle(ratio_);
+  const double ratio = middle(decay_->ratio);
   for (std::size_t c = 0; c < 2; ++c) {
-    std::vector<double> rest(map_->size_);
+    std::vector<double> rest(values_->points.size());
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = next.values[c][i] - ratio * step.values[c][i];
     widest = std::max(widest, extent(rest));
   }
-  const double of_ratio = (ratio_.upper - ratio_.lower + gamma_bound(2) * ratio) * step.largest;
-  return {widest, enlarged(next.off + ratio_.upper * step.off + of_ratio + gamma_bound(2) * next.largest)};
+  const double of_ratio = (decay_->ratio.upper - decay_->ratio.lower + gamma_bound(2) * ratio) * step.largest;
+  return {widest,
+          enlarged(next.off + decay_->ratio.upper * step.off + of_ratio + gamma_bound(2) * next.largest)};
 }
 
 // Parts beyond the last ones shrink by the factor of a period.
 void CornerRings::add_up(std::vector<double> parts) {
-  const CharacteristicMap::Contraction& shrinks = map_->contraction_;
+  const RingDecay& shrinks = *decay_;
   const auto period = static_cast<double>(shrinks.period);
-  const double rest = 1 - shrinks.factor, grown = ratio_.lower - 1;
+  const double rest = 1 - shrinks.factor, grown = decay_->ratio.lower - 1;
   // What the levels are scaled by differs from the eigenvalue's power.
   for (double& part : parts) part *= 1 + 4 * static_cast<double>(parts.size()) * least_off_;
-  const double end = shrinks.growth * parts.back() * period;
+  const double end = shrinks.most * parts.back() * period;
   Sums sums{enlarged(end / rest), enlarged(end * period / (rest * rest)), 0};
   if (parts.size() >= shrinks.period) {
     double last = 0;
@@ -129,16 +132,16 @@ void CornerRings::add_up(std::vector<double> parts) {
     sums.once = enlarged(sums.once + parts[level]);
     sums.twice = enlarged(sums.twice + sums.once);
     if (grown > 0) sums.twice = std::min(sums.twice, enlarged(sums.once / grown));
-    sums.of_growth = enlarged((sums.of_growth + parts[level]) / ratio_.lower);
+    sums.of_growth = enlarged((sums.of_growth + parts[level]) / decay_->ratio.lower);
     further_[level] = sums;
   }
 }
 
 Patch CornerRings::patch_of(const Level& level) const {
   Patch net;
-  net.kind = map_->kind_;
+  net.kind = decay_->kind;
   net.first = values_->first;
-  for (std::size_t i = 0; i < map_->size_; ++i)
+  for (std::size_t i = 0; i < values_->points.size(); ++i)
     net.points.push_back({level.values[0][i], level.values[1][i], 0});
   net.largest = level.largest;
   net.error = level.off;
@@ -150,8 +153,9 @@ Patch CornerRings::net(std::size_t level) const { return level == 0 ? *values_ :
 CornerRings::Further CornerRings::all_further(std::size_t level) const {
   Further further{patch_of(levels_[level]), std::nullopt};
   const Sums& sums = further_[level];
-  further.net.error = enlarged(further.net.error + (map_->conformal_ ? sums.once : sums.twice));
-  if (!map_->conformal_) {
+  further.net.error =
+      enlarged(further.net.error + (decay_->growth == RingDecay::Growth::none ? sums.once : sums.twice));
+  if (decay_->growth != RingDecay::Growth::none) {
     further.growth = patch_of(step_of(level));
     further.growth->error = enlarged(further.growth->error + sums.of_growth);
   }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <snug/shape/characteristic_map.h>
+#include <snug/shape/ring_decay.h>
 
 namespace snug {
 
@@ -16,13 +16,14 @@ namespace snug {
 /// Source:    derivations/self_contact.md, "All rings at once".
 class CornerRings {
  public:
-  CornerRings(const CharacteristicMap& map, const Patch& values);
+  CornerRings(const RingDecay& decay, const Patch& values);
   /// How many levels it is of use to look at; at least one.
   [[nodiscard]] std::size_t count() const { return further_.size(); }
   /// The net of one level.
   [[nodiscard]] Patch net(std::size_t level) const;
-  /// Each net of a level and of all further ones is `net` and c times `growth`, both up to their errors, for some c >= 0; `growth`,
-  /// the same for all, is one net of numbers times one vector. None of a conformal map: then it is `net` up to its error.
+  /// Each net of a level and of all further ones is `net` and c times `growth`, both up to their errors, for some c >= 0. `growth` is the
+  /// same for all; where it is of one row, it is one net of numbers times one vector. None where all eigenvalues are equal, without
+  /// chains: then it is `net` up to its error.
   struct Further {
     Patch net;
     std::optional<Patch> growth;
@@ -35,7 +36,7 @@ class CornerRings {
     std::array<std::vector<double>, 2> values;
     double off = 0, largest = 0;
   };
-  void descend(double least);
+  void descend();
   struct Lasting {
     double extent, off;
   };
@@ -44,7 +45,7 @@ class CornerRings {
   [[nodiscard]] Level step_of(std::size_t level) const;
   void add_up(std::vector<double> parts);
 
-  const CharacteristicMap* map_;
+  const RingDecay* decay_;
   const Patch* values_;
   Interval ratio_{1};     // of the larger eigenvalue to the other one
   double least_off_ = 0;  // of that one, relative to it

@@ -83,27 +83,25 @@ bool turns_left(const FlatDerivatives& d, const FlatDerivatives& e) {
   return true;
 }
 
-const CharacteristicMap* map_of(const Kind& kind) {
-  return kind.polynomial() ? nullptr : asymptotics_of(kind).characteristic_map();
+const RingDecay* decay_of(const Kind& kind) {
+  return kind.polynomial() ? nullptr : asymptotics_of(kind).ring_decay();
 }
 
-std::size_t corner_of(const CharacteristicMap& tip, const Patch& patch) {
-  return (tip.corner() + patch.first) % 3;
-}
+std::size_t corner_of(const RingDecay& tip, const Patch& patch) { return (tip.corner + patch.first) % 3; }
 
 // Is the determinant positive all over a patch in the plane?
 class LeftTurn {
  public:
   [[nodiscard]] static bool everywhere(const Patch& patch) {
-    return holds(patch, nullptr, patch.kind->polynomial() ? 1 : decay_levels);
+    return LeftTurn{}.holds(patch, nullptr, patch.kind->polynomial() ? 1 : decay_levels);
   }
 
  private:
   // With `growth`: of the patch and of any number >= 0 of times that.
-  static bool holds(const Patch& patch, const Patch* growth, unsigned levels) {
+  bool holds(const Patch& patch, const Patch* growth, unsigned levels) {
     if (patch.kind->polynomial() && coefficients_hold(patch, growth)) return true;
     if (levels == 0) return false;
-    if (const CharacteristicMap* tip = map_of(*patch.kind)) {
+    if (const RingDecay* tip = decay_of(*patch.kind)) {
       return growth == nullptr && tip_holds(*tip, patch, levels - 1);
     }
     for (unsigned child = 0; child < 4; ++child) {
@@ -112,14 +110,14 @@ class LeftTurn {
     return true;
   }
 
-  static bool child_holds(const Patch& patch, const Patch* growth, unsigned child, unsigned levels) {
+  bool child_holds(const Patch& patch, const Patch* growth, unsigned child, unsigned levels) {
     const Patch piece = split(patch, child);
     const std::optional<Patch> more = growth != nullptr ? std::optional(split(*growth, child)) : std::nullopt;
     if (piece.kind->polynomial()) levels = std::min(levels, polynomial_levels);
     return holds(piece, more ? &*more : nullptr, levels);
   }
 
-  static bool tip_holds(const CharacteristicMap& tip, const Patch& patch, unsigned levels) {
+  bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels) {
     const auto corner = static_cast<unsigned>(corner_of(tip, patch));
     const auto ring_holds = [&](const Patch& net, const Patch* growth) {
       for (unsigned child = 0; child < 4; ++child) {
@@ -128,6 +126,7 @@ class LeftTurn {
       return true;
     };
     const CornerRings rings(tip, patch);
+    growth_turns_ = tip.growth == RingDecay::Growth::of_some;
     for (std::size_t ring = 0; ring < std::min(rings.count(), max_rings); ++ring) {
       const auto [net, growth] = rings.all_further(ring);
       if ((growth || net.error < max_net_share * net.largest) && ring_holds(net, growth ? &*growth : nullptr))
@@ -137,15 +136,19 @@ class LeftTurn {
     return false;
   }
 
-  static bool coefficients_hold(const Patch& patch, const Patch* growth) {
+  bool coefficients_hold(const Patch& patch, const Patch* growth) const {
     for (std::size_t part = 0; part < patch.kind->form().parts; ++part) {
       const FlatDerivatives d(polynomial_of(patch, part));
       if (!turns_left(d, d)) return false;
-      // Of the growth alone it is 0: all its derivatives are along one vector.
-      if (growth != nullptr && !turns_left(d, FlatDerivatives(polynomial_of(*growth, part)))) return false;
+      if (growth == nullptr) continue;
+      const FlatDerivatives more(polynomial_of(*growth, part));
+      if (!turns_left(d, more) || (growth_turns_ && !turns_left(more, more))) return false;
     }
     return true;
   }
+
+  // Is the determinant of the growth alone not known to be 0, as where all its derivatives are along one vector?
+  bool growth_turns_ = false;
 };
 
 // Does a closed curve turn left around a point, all along, and only once? It is added edge by edge.
@@ -180,7 +183,7 @@ class TurnAround {
   bool add(const Patch& patch, unsigned edge, unsigned levels) {
     if (patch.kind->polynomial()) return add_polynomial(patch, edge, border_levels);
     if (levels == 0) return false;
-    if (const CharacteristicMap* tip = map_of(*patch.kind)) {
+    if (const RingDecay* tip = decay_of(*patch.kind)) {
       const auto corner = static_cast<unsigned>(corner_of(*tip, patch));
       if (corner == edge || corner == (edge + 1) % 3) {
         if (is_sharp_curve(patch, corner, edge)) return add_sharp_curve(patch, corner, edge);
@@ -315,7 +318,7 @@ class TurnAround {
   }
 
   // Ring by ring, until one net stands for the directions of all that are left, and the hull of control points for where they are.
-  bool add_rings(const CharacteristicMap& tip, Patch at, unsigned corner, unsigned edge, unsigned levels) {
+  bool add_rings(const RingDecay& tip, Patch at, unsigned corner, unsigned edge, unsigned levels) {
     const CornerRings rings(tip, at);
     const unsigned far = corner == edge ? (edge + 1) % 3 : edge;
     for (std::size_t ring = 0; ring < std::min(rings.count(), max_rings); ++ring) {

@@ -1,0 +1,319 @@
+#include <snug/shape/lasting_rows.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+
+#include <snug/geometry/rounding.h>
+#include <snug/shape/control_values.h>
+#include <snug/shape/matrix_power.h>
+
+namespace snug {
+namespace {
+
+using Row = std::vector<double>;
+using Matrix = std::vector<Row>;
+
+// Exact entries have this many bits behind the point at most; whole rows are this large.
+constexpr double grain = 0x1p12, largest_whole = 0x1p16;
+constexpr int max_iterations = 3000, max_denominator = 400;
+// Eigenvalues that are nearer to each other count as equal.
+constexpr double same = 1e-6;
+
+Matrix dense(const Stencils& step, std::size_t size) {
+  Matrix a(size, Row(size, 0.0));
+  for (std::size_t r = 0; r < size; ++r) {
+    const Stencils::Row row = step.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) a[r][row.sources[i]] += row.weights[i];
+  }
+  return a;
+}
+
+Row times(const Row& w, const Matrix& a) {
+  Row product(w.size(), 0.0);
+  for (std::size_t r = 0; r < w.size(); ++r) {
+    for (std::size_t c = 0; c < w.size(); ++c) product[c] += w[r] * a[r][c];
+  }
+  return product;
+}
+Row times(const Matrix& a, const Row& v) {
+  Row product;
+  for (const Row& row : a) product.push_back(std::inner_product(row.begin(), row.end(), v.begin(), 0.0));
+  return product;
+}
+
+// Rows x with x M = 0, up to rounding, in echelon form.
+Matrix left_null_space(const Matrix& m) {
+  const std::size_t n = m.size();
+  // Columns of M are equations.
+  Matrix equations(n, Row(n));
+  for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = 0; c < n; ++c) equations[c][r] = m[r][c];
+  }
+  std::vector<std::size_t> pivots;
+  std::size_t rank = 0;
+  // The last points' weights come from those of the first ones.
+  for (std::size_t k = n; k-- > 0 && rank < n;) {
+    std::size_t best = rank;
+    for (std::size_t e = rank; e < n; ++e) {
+      if (std::fabs(equations[e][k]) > std::fabs(equations[best][k])) best = e;
+    }
+    if (std::fabs(equations[best][k]) < 1e-10) continue;
+    std::swap(equations[rank], equations[best]);
+    for (std::size_t e = 0; e < n; ++e) {
+      const double factor = e == rank ? 0 : equations[e][k] / equations[rank][k];
+      for (std::size_t c = 0; factor != 0 && c < n; ++c) equations[e][c] -= factor * equations[rank][c];
+    }
+    pivots.push_back(k);
+    ++rank;
+  }
+  Matrix basis;
+  for (std::size_t free = 0; free < n; ++free) {
+    if (std::find(pivots.begin(), pivots.end(), free) != pivots.end()) continue;
+    Row x(n, 0.0);
+    x[free] = 1;
+    for (std::size_t e = 0; e < rank; ++e) x[pivots[e]] = -equations[e][free] / equations[e][pivots[e]];
+    basis.push_back(x);
+  }
+  return basis;
+}
+
+// The row times a whole number, if that is whole, up to rounding.
+std::optional<Row> whole(const Row& x) {
+  for (int d = 1; d <= max_denominator; ++d) {
+    Row rounded;
+    for (const double value : x) {
+      const double by = d * value, near = std::round(by);
+      if (std::fabs(by - near) > 1e-7 || std::fabs(near) > largest_whole) break;
+      rounded.push_back(near);
+    }
+    if (rounded.size() == x.size()) return rounded;
+  }
+  return std::nullopt;
+}
+
+// Of exact matrices: the rows that (A - l)^2 takes to 0. All numbers are whole ones, of at most 53 bits: no sum is rounded.
+struct ExactRows {
+  Matrix rows;
+  std::size_t links = 0;
+};
+std::optional<ExactRows> exact_rows(const Matrix& a, double eigenvalue) {
+  const std::size_t n = a.size();
+  Matrix less = a;
+  for (std::size_t r = 0; r < n; ++r) {
+    less[r][r] -= eigenvalue;
+    for (double& x : less[r]) {
+      x *= grain;
+      if (x != std::round(x)) return std::nullopt;
+    }
+  }
+  Matrix square;
+  for (const Row& row : less) square.push_back(times(row, less));
+  for (Row& row : square) {
+    for (double& x : row) x /= grain * grain;
+  }
+  ExactRows result;
+  Matrix after;
+  for (const Row& x : left_null_space(square)) {
+    const std::optional<Row> row = whole(x);
+    if (!row) return std::nullopt;
+    const auto size = [](const Row& of) {
+      double sum = 0;
+      for (const double value : of) sum += std::fabs(value);
+      return sum;
+    };
+    const Row once = times(*row, less);
+    if (!(size(*row) * grain * 4 < 0x1p52) || !(size(once) * grain * 4 < 0x1p52)) return std::nullopt;
+    for (const double value : times(once, less)) {
+      if (value != 0) return std::nullopt;
+    }
+    result.rows.push_back(*row);
+    if (size(once) != 0) after.push_back(once);
+  }
+  // At least as many as these are independent; more than one are taken for more.
+  result.links = after.size();
+  for (std::size_t k = 1; k < after.size(); ++k) {
+    bool same_line = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < i; ++j)
+        same_line = same_line && after[0][i] * after[k][j] == after[0][j] * after[k][i];
+    }
+    if (same_line) --result.links;
+  }
+  return result;
+}
+
+// The inverse, about; empty if there is none.
+Matrix inverse(Matrix m) {
+  const std::size_t n = m.size();
+  Matrix result(n, Row(n, 0.0));
+  for (std::size_t k = 0; k < n; ++k) result[k][k] = 1;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t best = k;
+    for (std::size_t r = k; r < n; ++r) {
+      if (std::fabs(m[r][k]) > std::fabs(m[best][k])) best = r;
+    }
+    if (!(std::fabs(m[best][k]) > 1e-12)) return {};
+    std::swap(m[k], m[best]);
+    std::swap(result[k], result[best]);
+    const double pivot = 1 / m[k][k];
+    for (std::size_t c = 0; c < n; ++c) {
+      m[k][c] *= pivot;
+      result[k][c] *= pivot;
+    }
+    for (std::size_t r = 0; r < n; ++r) {
+      const double factor = r == k ? 0 : m[r][k];
+      for (std::size_t c = 0; factor != 0 && c < n; ++c) {
+        m[r][c] -= factor * m[k][c];
+        result[r][c] -= factor * result[k][c];
+      }
+    }
+  }
+  return result;
+}
+
+double norm(const Matrix& m) {
+  double largest = 0;
+  for (const Row& row : m) {
+    double sum = 0;
+    for (const double x : row) sum += std::fabs(x);
+    largest = std::max(largest, sum);
+  }
+  return enlarged(largest * (1 + gamma_bound(m.size() + 1)));
+}
+
+// A row and an eigenvalue near an exact pair, all numbers at most `off` from it.
+struct Pair {
+  Row row, column;  // left and right
+  double eigenvalue = 0, off = 0;
+};
+
+// By Newton's step for w A = x w, w . c = 1, in all numbers (w, x): R is about the inverse of the derivative J there, the second
+// derivative takes h to (-h_x h_w, 0). An exact pair is within r if |R F| + |1 - R J| r + |R| r^2 <= r.
+bool verify(const Matrix& a, double a_error, Pair& pair) {
+  const std::size_t n = a.size();
+  Matrix j(n + 1, Row(n + 1, 0.0));
+  double square = 0;
+  for (const double x : pair.row) square += x * x;
+  for (std::size_t c = 0; c < n; ++c) {
+    for (std::size_t r = 0; r < n; ++r) j[c][r] = a[r][c] - (r == c ? pair.eigenvalue : 0);
+    j[c][n] = -pair.row[c];
+    j[n][c] = pair.row[c] / square;
+  }
+  const Matrix inverted = inverse(j);
+  if (inverted.empty()) return false;
+  const double of_inverse = norm(inverted), of_derivative = norm(j);
+  Row residual = times(pair.row, a);
+  double largest = 0, sum = 0;
+  for (std::size_t c = 0; c < n; ++c) {
+    residual[c] -= pair.eigenvalue * pair.row[c];
+    largest = std::max(largest, std::fabs(residual[c]));
+    sum += std::fabs(pair.row[c]);
+  }
+  // Columns of A have sums of at most n. The normalisation is what the row has.
+  const auto count = static_cast<double>(n);
+  const double rounding = gamma_bound(n + 4) * (sum + 1) * 4 + a_error * sum;
+  const double step = enlarged(of_inverse * (largest + rounding));
+  Matrix product;
+  for (const Row& row : inverted) product.push_back(times(row, j));
+  for (std::size_t k = 0; k <= n; ++k) product[k][k] -= 1;
+  const double slope = enlarged(
+      norm(product) + of_inverse * (gamma_bound(n + 4) * of_derivative * (count + 1) + count * a_error));
+  const double off = enlarged(4 * step);
+  if (!(step + slope * off + of_inverse * off * off <= off) || !(off < 1e-9)) return false;
+  pair.off = off;
+  return true;
+}
+
+// The largest eigenvalue beside 1, and the next one; by iteration, without constants and what was found before.
+std::optional<Pair> largest_pair(const Matrix& a, const std::vector<Pair>& before) {
+  const std::size_t n = a.size();
+  Pair pair;
+  for (std::size_t i = 0; i < n; ++i) {
+    pair.row.push_back(std::sin(1.0 + 3.0 * static_cast<double>(i * i)));
+    pair.column.push_back(std::cos(2.0 + static_cast<double>(i * i)));
+  }
+  const auto dot = [](const Row& x, const Row& y) {
+    return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
+  };
+  const auto remove = [](Row& x, double by, const Row& y) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] -= by * y[i];
+  };
+  const auto scale = [](Row& x) {
+    const double size = largest_of(x);
+    for (double& value : x) value /= size;
+    return size;
+  };
+  // The row of the eigenvalue 1.
+  Row limit(n, 1.0);
+  for (int i = 0; i < max_iterations; ++i) {
+    limit = times(limit, a);
+    static_cast<void>(scale(limit));
+  }
+  const Row ones(n, 1.0);
+  for (int i = 0; i < max_iterations; ++i) {
+    remove(pair.row, dot(pair.row, ones) / dot(limit, ones), limit);
+    remove(pair.column, dot(limit, pair.column) / dot(limit, ones), ones);
+    for (const Pair& other : before) {
+      const double both = dot(other.row, other.column);
+      remove(pair.row, dot(pair.row, other.column) / both, other.row);
+      remove(pair.column, dot(other.row, pair.column) / both, other.column);
+    }
+    pair.row = times(pair.row, a);
+    pair.column = times(a, pair.column);
+    if (!(scale(pair.row) > 1e-12) || !(scale(pair.column) > 1e-12)) return std::nullopt;
+  }
+  const double both = dot(pair.row, pair.column);
+  if (!(std::fabs(both) > 1e-9)) return std::nullopt;
+  pair.eigenvalue = dot(times(pair.row, a), pair.column) / both;
+  return pair;
+}
+
+Interval around(const Pair& pair) {
+  return {rounded_down(pair.eigenvalue - pair.off), rounded_up(pair.eigenvalue + pair.off)};
+}
+
+}  // namespace
+
+std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t size) {
+  const Matrix a = dense(step, size);
+  const std::optional<Pair> found = largest_pair(a, {});
+  if (!found) return std::nullopt;
+  Pair first = *found;
+  LastingRows result;
+  const auto count = static_cast<double>(size);
+  const double error = step.max_error() + gamma_bound(2);
+  for (const double eigenvalue : {0.5, 0.25}) {
+    if (first.eigenvalue < eigenvalue - same) continue;
+    std::optional<ExactRows> exact = exact_rows(a, eigenvalue);
+    if (!exact || exact->rows.size() < 2) break;
+    result.rows = std::move(exact->rows);
+    result.least = Interval(eigenvalue);
+    result.chained = exact->links > 0;
+    result.links = exact->links;
+    // Chained rows show themselves to iterations only slowly.
+    if (first.eigenvalue < eigenvalue + (result.chained ? 0.01 : same)) return result;
+    const std::optional<Pair> second = largest_pair(a, {first});
+    if (result.chained || !verify(a, error, first)) return std::nullopt;
+    if (second && second->eigenvalue > eigenvalue + same) break;
+    result.rows.push_back(first.row);
+    result.error = enlarged(count * first.off);
+    result.ratio = around(first) / result.least;
+    return result;
+  }
+  std::optional<Pair> second = largest_pair(a, {first});
+  if (!second || second->eigenvalue > first.eigenvalue - same) return std::nullopt;
+  if (!verify(a, error, first) || !verify(a, error, *second)) return std::nullopt;
+  result = {{first.row, second->row},
+            enlarged(count * std::max(first.off, second->off)),
+            around(*second),
+            {1},
+            false,
+            0};
+  result.ratio = around(first) / result.least;
+  return result;
+}
+
+}  // namespace snug

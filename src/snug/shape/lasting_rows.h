@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <snug/geometry/interval.h>
+#include <snug/scheme/stencils.h>
+
+namespace snug {
+
+/// Independent rows W that a step A takes to themselves, W A = L W, and all that lasts under A: of a largest eigenvalue below 1, and of the
+/// next one.
+struct LastingRows {
+  std::vector<std::vector<double>> rows;
+  double error = 0;       ///< upper bound of the sum of a row's errors
+  Interval least;         ///< the smaller eigenvalue
+  Interval ratio{1};      ///< of the larger one, which has one row, to it
+  bool chained = false;   ///< (L - l)^2 = 0, but not L - l
+  std::size_t links = 0;  ///< the rank of L - l, if it is chained
+};
+
+/// Whether nothing else lasts is not proved here. None where eigenvalues are neither 1/2 or 1/4, exactly, nor simple.
+/// Guarantee: there are such exact rows within the error.
+/// Source:    derivations/self_contact.md, "Other rows".
+[[nodiscard]] std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t size);
+
+}  // namespace snug

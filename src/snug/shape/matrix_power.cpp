@@ -1,0 +1,69 @@
+#include <snug/shape/matrix_power.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+double largest_sum(const std::vector<double>& matrix, std::size_t size) {
+  double largest = 0;
+  for (std::size_t r = 0; r < size; ++r) {
+    double sum = 0;
+    for (std::size_t c = 0; c < size; ++c) sum += std::fabs(matrix[r * size + c]);
+    largest = std::max(largest, sum);
+  }
+  return enlarged(largest * (1 + gamma_bound(size)));
+}
+
+}  // namespace
+
+double growth_of_rows(const std::vector<double>& matrix, std::size_t size) {
+  double widest = 0;
+  for (std::size_t a = 0; a < size; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      double sum = 0;
+      for (std::size_t c = 0; c < size; ++c) {
+        sum += std::fabs(matrix[a * size + c] - matrix[b * size + c]);
+      }
+      widest = std::max(widest, sum);
+    }
+  }
+  return enlarged(0.5 * widest);
+}
+
+MatrixPower::MatrixPower(const Stencils& rows, std::size_t columns)
+    : size(columns), matrix(columns * columns, 0.0), sum(rows.max_abs_sum()) {
+  for (std::size_t r = 0; r < size; ++r) {
+    const Stencils::Row row = rows.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) matrix[r * size + row.sources[i]] += row.weights[i];
+  }
+  error = enlarged(rows.max_error() + gamma_bound(8) * sum);
+}
+
+void MatrixPower::remove(const Stencils::Row& row) {
+  for (std::size_t r = 0; r < size; ++r) {
+    for (std::size_t i = 0; i < row.sources.size(); ++i) matrix[r * size + row.sources[i]] -= row.weights[i];
+  }
+  error = enlarged(error + gamma_bound(4) * (sum + row.abs_sum));
+  sum = largest_sum(matrix, size);
+}
+
+void MatrixPower::square() {
+  std::vector<double> product(size * size, 0.0);
+  for (std::size_t r = 0; r < size; ++r) {
+    for (std::size_t k = 0; k < size; ++k) {
+      const double weight = matrix[r * size + k];
+      if (weight == 0) continue;
+      for (std::size_t c = 0; c < size; ++c) product[r * size + c] += weight * matrix[k * size + c];
+    }
+  }
+  error = enlarged(error * (2 * sum + error) + gamma_bound(size + 2) * sum * sum);
+  sum = largest_sum(product, size);
+  matrix = std::move(product);
+}
+
+}  // namespace snug

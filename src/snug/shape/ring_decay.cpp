@@ -1,0 +1,182 @@
+#include <snug/shape/ring_decay.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <snug/geometry/rounding.h>
+#include <snug/shape/characteristic_map.h>
+#include <snug/shape/control_values.h>
+#include <snug/shape/lasting_rows.h>
+#include <snug/shape/matrix_power.h>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t largest_size = 120;
+constexpr unsigned max_squarings = 12;
+constexpr double enough_contraction = 0.95;
+
+using Row = std::vector<double>;
+
+// Columns V with W V = 1, about: W^T (W W^T)^-1, orthogonalised row by row. Empty where rows are nearly dependent.
+std::vector<Row> dual_columns(const std::vector<Row>& rows) {
+  const auto dot = [](const Row& a, const Row& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  };
+  std::vector<Row> columns;
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    // What of row t is across all others.
+    Row across = rows[t];
+    std::vector<Row> others;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (k == t) continue;
+      Row other = rows[k];
+      for (int pass = 0; pass < 2; ++pass) {
+        for (const Row& known : others) {
+          const double by = dot(other, known) / dot(known, known);
+          for (std::size_t i = 0; i < other.size(); ++i) other[i] -= by * known[i];
+        }
+      }
+      others.push_back(other);
+    }
+    for (int pass = 0; pass < 2; ++pass) {
+      for (const Row& known : others) {
+        const double by = dot(across, known) / dot(known, known);
+        for (std::size_t i = 0; i < across.size(); ++i) across[i] -= by * known[i];
+      }
+    }
+    const double size = dot(across, rows[t]);
+    if (!(size > 1e-6 * dot(rows[t], rows[t]))) return {};
+    for (double& x : across) x /= size;
+    columns.push_back(across);
+  }
+  return columns;
+}
+
+double abs_sum(const Row& row) {
+  double sum = 0;
+  for (const double x : row) sum += std::fabs(x);
+  return enlarged(sum * (1 + gamma_bound(row.size())));
+}
+
+class DecaySearch {
+ public:
+  DecaySearch(const Stencils& step, const Stencils::Row& limit, const LastingRows& lasting)
+      : step_(step), limit_(limit), lasting_(lasting), size_(step.row_count()) {}
+
+  [[nodiscard]] bool find(RingDecay& decay) {
+    columns_ = dual_columns(lasting_.rows);
+    return !columns_.empty() && contracts(decay) && bound_seen(decay);
+  }
+
+ private:
+  // For x with W x = 0: A^m x = (A^m - X W) x for any X, which is about A^m V here.
+  bool contracts(RingDecay& decay) const {
+    MatrixPower power(step_, size_);
+    power.remove(limit_);
+    double scale = decay.least.lower;
+    for (unsigned i = 0; i <= max_squarings; ++i) {
+      std::vector<double> rest = power.matrix;
+      double projected = 0, projected_error = 0;
+      for (std::size_t t = 0; t < columns_.size(); ++t) {
+        const double own_sum = abs_sum(lasting_.rows[t]);
+        double largest = 0;
+        for (std::size_t r = 0; r < size_; ++r) {
+          double x = 0;
+          for (std::size_t c = 0; c < size_; ++c) x += power.matrix[r * size_ + c] * columns_[t][c];
+          largest = std::max(largest, std::fabs(x));
+          for (std::size_t c = 0; c < size_; ++c) rest[r * size_ + c] -= x * lasting_.rows[t][c];
+        }
+        projected += largest * own_sum;
+        projected_error += largest * lasting_.error;
+      }
+      const double contraction = enlarged(growth_of_rows(rest, size_) + power.error + projected_error +
+                                          gamma_bound(4 + columns_.size()) * (power.sum + projected));
+      const double factor = enlarged(contraction / scale);
+      if (factor < enough_contraction) {
+        decay.period = std::size_t{1} << i;
+        decay.factor = factor;
+        return true;
+      }
+      decay.most = enlarged(decay.most * std::max(1.0, factor));
+      scale = scale * scale * (1 - gamma_bound(2));
+      power.square();
+      if (!(scale > 1e-250) || !(decay.most < 1e9)) return false;
+    }
+    return false;
+  }
+
+  // V' = V (W V)^-1 is about V. Any x is V' W x, and a rest that W does not see. With r = B V' - V' L / l, which W does not see, either,
+  // B^k V' = V' (L / l)^k + sum of B^i r (L / l)^(k - 1 - i). Of a chain powers grow as k does: what is multiplied by k elsewhere.
+  bool bound_seen(RingDecay& decay) const {
+    const std::size_t m = columns_.size();
+    const double least = middle(decay.least), rest = 1 - decay.factor;
+    const auto period = static_cast<double>(decay.period);
+    Row image;
+    double seen = 0;
+    std::vector<Row> images;
+    for (const Row& column : columns_) {
+      apply(step_, column, image);
+      images.push_back(image);
+    }
+    double mixing = 0;
+    for (std::size_t t = 0; t < m; ++t) {
+      for (std::size_t k = 0; k < m; ++k) {
+        double product = k == t ? -1 : 0;
+        for (std::size_t i = 0; i < size_; ++i) product += lasting_.rows[t][i] * columns_[k][i];
+        mixing = std::max(mixing, std::fabs(product) +
+                                      (lasting_.error + gamma_bound(size_ + 2) * abs_sum(lasting_.rows[t])) *
+                                          largest_of(columns_[k]));
+      }
+    }
+    if (!(static_cast<double>(m) * mixing < 0x1p-24)) return false;
+    for (std::size_t t = 0; t < m; ++t) {
+      // The part of the image that W does not see, generously: with all roundings it is far below 1.
+      Row left = images[t];
+      for (std::size_t k = 0; k < m; ++k) {
+        double share = 0;
+        for (std::size_t i = 0; i < size_; ++i) share += lasting_.rows[k][i] * images[t][i];
+        for (std::size_t i = 0; i < size_; ++i) left[i] -= share * columns_[k][i];
+      }
+      const double unseen = extent(left) / least + 0x1p-20 * extent(columns_[t]);
+      const double grown =
+          enlarged(2 * extent(columns_[t]) + decay.most * unseen * period / rest * period / rest);
+      seen += grown * (abs_sum(lasting_.rows[t]) + lasting_.error);
+    }
+    decay.seen = enlarged(2 * seen);
+    return std::isfinite(decay.seen);
+  }
+
+  const Stencils& step_;
+  const Stencils::Row limit_;
+  const LastingRows& lasting_;
+  std::size_t size_;
+  std::vector<Row> columns_;
+};
+
+}  // namespace
+
+std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicMap* map) {
+  if (map != nullptr) return map->decay();
+  if (kind.polynomial() || kind.transient() || kind.key().polygon || kind.control_count() > largest_size)
+    return std::nullopt;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const KindChild& child = kind.children()[corner];
+    if (kind.regular_corner(corner) || child.kind != &kind || child.first != 0) continue;
+    const std::optional<LastingRows> lasting = find_lasting_rows(child.stencils, kind.control_count());
+    if (!lasting) return std::nullopt;
+    RingDecay decay{&kind, corner, lasting->least, lasting->ratio};
+    if (lasting->chained || lasting->ratio.lower > 1) {
+      decay.growth = lasting->links > 1 ? RingDecay::Growth::of_some : RingDecay::Growth::of_one;
+    }
+    if (!DecaySearch(child.stencils, kind.corner_limits().row(corner), *lasting).find(decay))
+      return std::nullopt;
+    return decay;
+  }
+  return std::nullopt;
+}
+
+}  // namespace snug
