@@ -103,8 +103,8 @@ struct Contacts {
 
 /// Does a surface meet itself?
 enum class SelfVerdict : std::uint8_t {
-  clear,         ///< proved: no two parameters have the same limit point
-  intersecting,  ///< proved: two pieces without a common corner cross each other, or two facets have a common point
+  clear,  ///< proved: no two parameters have the same limit point
+  intersecting,  ///< proved: pieces cross, facets or vertices have a common point, or a sheet turns over in its plane
   near,  ///< proved: two points are at most `within` apart, but farther apart than the radius along the surface
   undecided,  ///< none of these could be shown
 };
@@ -123,9 +123,9 @@ struct SelfContactOptions {
 /// Two places of a surface that meet, are near each other, or could not be proved apart.
 struct SelfContactPair {
   SelfVerdict verdict = SelfVerdict::undecided;  ///< all but clear
-  bool touching = false;                         ///< of facets that intersect: in no point inside of both
-  WitnessPoints points;                          ///< on the two pieces in question; `at` is set
-  Interval distance;  ///< contains the distance of the two pieces; [0, 0] where they cross
+  bool touching = false;  ///< of facets: in no point inside of both; of vertices that coincide
+  WitnessPoints points;   ///< on the two pieces in question; `at` is set
+  Interval distance;      ///< contains the distance of the two pieces; [0, 0] where they cross
 };
 
 /// The answer to "does this surface meet itself?"
@@ -150,7 +150,7 @@ struct SelfContact {
 /// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Facets (triangles of flat,
 ///            plane convex faces of bilinear, such faces that are sharp all around) are compared exactly: touching is found, also
 ///            where vertices coincide but are not one. On others, places where the surface is not an immersion (spikes, folded
-///            creases, collapsed patches, what is not manifold) are `undecided`, never `clear`; so are darts, and smooth vertices
+///            creases, collapsed patches, what is not manifold) are `undecided`, never `clear`; so are smooth vertices
 ///            of boundaries and creases with many faces (docs/self_contact.md).
 /// Budget:    1,000,000 stars and pairs of pieces tested, about; 100 bytes each.
 /// Errors:    InputError: (value) for more than 20 levels, for `within` not positive and finite, and for a radius that

@@ -359,5 +359,65 @@ TEST(self_contact, of_a_facet_without_area_is_one_with_itself) {
   EXPECT_EQ(found.pairs[0].points[1].at->owner, 0u);
 }
 
+// An L of one face: at its concave corner the surface turns over.
+TEST(self_contact, of_a_sheet_that_turns_over_in_its_plane_is_found) {
+  oracle::TaggedMesh mesh;
+  mesh.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.polygons = {{0, 1, 2, 3, 4, 5}};
+  for (const bool tilted : {false, true}) {
+    if (tilted) {
+      for (auto& p : mesh.points) p = {p[0], p[1] - p[0], p[1]};
+    }
+    const SelfContact found = ask(mesh, Scheme::catmark);
+    EXPECT_EQ(found.verdict, SelfVerdict::intersecting);
+    ASSERT_EQ(found.pairs.size(), 1u);
+    EXPECT_FALSE(found.pairs[0].touching);
+  }
+  // Not where the sheet leaves its plane, and curls over; nor where the corner is convex.
+  mesh.points[0][2] += 0.25;
+  EXPECT_EQ(ask(mesh, Scheme::catmark).verdict, SelfVerdict::clear);
+  mesh.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0.5, 1.75, 0}, {0, 1, 0}};
+  EXPECT_EQ(ask(mesh, Scheme::catmark).verdict, SelfVerdict::clear);
+}
+
+// Two sheets whose borders have the same control points, each its own: with the points of one moved they no longer do.
+TEST(self_contact, of_borders_whose_vertices_coincide_touches) {
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    oracle::TaggedMesh mesh;
+    const auto add = [&](double z, double side) {
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      for (int y = 0; y < 3; ++y) {
+        for (int x = 0; x < 4; ++x) mesh.points.push_back({1.0 * x, side * y, z * y});
+      }
+      for (std::uint32_t y = 0; y < 2; ++y) {
+        for (std::uint32_t x = 0; x < 3; ++x) {
+          const std::uint32_t a = first + 4 * y + x;
+          const std::vector<std::uint32_t> quad =
+              side > 0 ? std::vector{a, a + 1, a + 5, a + 4} : std::vector{a, a + 4, a + 5, a + 1};
+          if (scheme == Scheme::catmark) {
+            mesh.polygons.push_back(quad);
+          } else {
+            mesh.polygons.push_back({quad[0], quad[1], quad[2]});
+            mesh.polygons.push_back({quad[0], quad[2], quad[3]});
+          }
+        }
+      }
+    };
+    add(0.25, 1);
+    add(0.5, -1);
+    const SelfContact found = ask(mesh, scheme);
+    EXPECT_EQ(found.verdict, SelfVerdict::intersecting);
+    ASSERT_FALSE(found.pairs.empty());
+    for (const SelfContactPair& pair : found.pairs) {
+      EXPECT_TRUE(pair.touching);
+      EXPECT_LT(length(pair.points[1].point - pair.points[0].point), 1e-12);
+    }
+    // A neighbour elsewhere: the limit points are different ones, but for those of the corner that is left.
+    oracle::TaggedMesh apart = mesh;
+    for (std::size_t v = 12; v < 16; ++v) apart.points[v][2] += 0x1p-40;
+    EXPECT_NE(ask(apart, scheme).verdict, SelfVerdict::intersecting);
+  }
+}
+
 }  // namespace
 }  // namespace snug::self_test

@@ -310,5 +310,53 @@ TEST(self, verdicts_on_borders_are_those_of_refined_meshes) {
   EXPECT_GT(counts["intersecting, twin crosses"], 2 * trials);
 }
 
+// Sheets in a plane, from even to crumpled: where both sides of the refined one are seen it meets itself, and it is never clear. The
+// other way round `intersecting` has a side of its own in the refined mesh, or its border crosses itself.
+TEST(self, verdicts_in_a_plane_are_those_of_refined_meshes) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1));
+  std::mt19937_64 random(4);
+  std::map<std::string, int> counts;
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    for (const bool boundary : {false, true}) {
+      for (std::uint32_t n = boundary ? 1 : 3; n <= 6; ++n) {
+        for (const double amount : {0.1, 0.5, 1.0, 1.6}) {
+          for (int trial = 0; trial < trials; ++trial) {
+            oracle::TaggedMesh mesh = fan_of(n, scheme == Scheme::loop, boundary).mesh;
+            for (auto& p : mesh.points) {
+              for (std::size_t k = 0; k < 2; ++k) p[k] += amount * (unit(random) - 0.5);
+            }
+            if (n % 2 != 0) {
+              // Another plane, exactly.
+              for (auto& p : mesh.points) p = {p[1], p[1], p[0]};
+            }
+            const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}),
+                                                   {}, {.max_splits = 2'000});
+            bool up = false, down = false;
+            const oracle::TaggedMesh fine = refined(mesh, scheme);
+            for (const auto& face : fine.polygons) {
+              const auto &a = fine.points[face[0]], &b = fine.points[face[1]], &c = fine.points[face.back()];
+              const std::size_t x = n % 2 != 0 ? 1 : 0, y = n % 2 != 0 ? 2 : 1;
+              const double area = (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
+              // Faces have an area of 0.003 to 0.01, where the mesh is even.
+              if (std::fabs(area) > 2e-4) (area > 0 ? up : down) = true;
+            }
+            ++counts[std::string(name_of(found.verdict)) + (up && down ? ", folded" : ", not folded")];
+            if (up && down) {
+              EXPECT_NE(found.verdict, SelfVerdict::clear) << name_of(scheme) << " " << n << " " << amount;
+            } else {
+              EXPECT_NE(found.verdict, SelfVerdict::intersecting)
+                  << name_of(scheme) << " " << n << " " << amount;
+            }
+          }
+        }
+      }
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  for (const auto& [what, count] : counts) RecordProperty(what, count);
+  EXPECT_GT(counts["intersecting, folded"], 10 * trials);
+  EXPECT_GT(counts["clear, not folded"], 10 * trials);
+}
+
 }  // namespace
 }  // namespace snug::self_test

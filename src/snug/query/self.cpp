@@ -8,6 +8,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/query/self_exact.h>
 #include <snug/query/self_facets.h>
 #include <snug/query/self_near.h>
 #include <snug/query/self_pieces.h>
@@ -47,7 +48,7 @@ using NamePair = std::pair<PieceName, PieceName>;
 
 // Result for a pair of pieces: apart, or where they are not.
 struct Found {
-  enum class What : std::uint8_t { apart, crossing, unknown } what = What::apart;
+  enum class What : std::uint8_t { apart, crossing, touching, unknown } what = What::apart;
   NamePair pieces;
   std::array<TriangleParameter, 2> at;
   double lower = 0;
@@ -141,8 +142,14 @@ class SelfSearch {
           InputProblem::refused,
           "no face has a limit surface: all are holes or touch the boundary; use another boundary rule");
     }
-    if (!facets.all) look_for_contact(pieces, facets.faces, stars);
-    if (options_.within && crossings_.empty()) look_for_near();
+    if (!facets.all) {
+      add(flat_folds(model_), Found::What::crossing);
+      if (contacts_.empty()) look_for_contact(pieces, facets.faces, stars);
+      // No pieces show these, however small.
+      if (stars && !unknown_.empty() && contacts_.empty())
+        add(coincident_vertices(surface_), Found::What::touching);
+    }
+    if (options_.within && contacts_.empty()) look_for_near();
     return result();
   }
 
@@ -159,7 +166,7 @@ class SelfSearch {
     std::vector<NamePair> far = far_pairs(pieces);
     std::erase_if(far, are_facets);
     if (!stars) {
-      for (std::uint64_t most = 16; !far.empty() && crossings_.empty() && budget_ >= far.size(); most *= 16) {
+      for (std::uint64_t most = 16; !far.empty() && contacts_.empty() && budget_ >= far.size(); most *= 16) {
         unknown_.clear();
         far = compare_far(far, std::min(most, max_tests));
         if (most >= max_tests) break;
@@ -169,7 +176,7 @@ class SelfSearch {
     compare_far(far);
     std::vector<NamePair> live = near_pairs(pieces);
     std::erase_if(live, are_facets);
-    for (unsigned depth = 0; !live.empty() && crossings_.empty(); ++depth, ++level) {
+    for (unsigned depth = 0; !live.empty() && contacts_.empty(); ++depth, ++level) {
       monitor_.checkpoint();
       drop_proved(live, level);
       if (live.empty()) break;
@@ -183,6 +190,11 @@ class SelfSearch {
       compare_far(far);
       answer_.levels = depth + 1;
     }
+  }
+
+  // What stands in control points.
+  void add(const std::vector<PieceContact>& contacts, Found::What what) {
+    for (const auto& [pieces, at] : contacts) keep({what, {pieces[0], pieces[1]}, at});
   }
 
   void look_for_near() {
@@ -319,24 +331,24 @@ class SelfSearch {
   // Of each sort as many as an answer holds.
   void keep(const Found& found) {
     if (found.what == Found::What::apart) return;
-    auto& of_its_sort = found.what == Found::What::crossing ? crossings_ : unknown_;
+    auto& of_its_sort = found.what == Found::What::unknown ? unknown_ : contacts_;
     if (of_its_sort.size() < SelfContact::max_pairs) of_its_sort.push_back(found);
   }
 
   void spend(std::uint64_t work) { budget_ -= std::min(budget_, work); }
 
   SelfContact result() {
-    answer_.verdict = !crossings_.empty()                                ? SelfVerdict::intersecting
+    answer_.verdict = !contacts_.empty()                                 ? SelfVerdict::intersecting
                       : !nearness_.near.empty()                          ? SelfVerdict::near
                       : unknown_.empty() && nearness_.unresolved.empty() ? SelfVerdict::clear
                                                                          : SelfVerdict::undecided;
     answer_.outcome = outcome_of(answer_.verdict != SelfVerdict::undecided, budget_spent_);
     if (answer_.verdict != SelfVerdict::near) {
-      for (const Found& found : crossings_.empty() ? unknown_ : crossings_) add_place(found);
+      for (const Found& found : contacts_.empty() ? unknown_ : contacts_) add_place(found);
     }
     if (answer_.verdict == SelfVerdict::near) {
       for (const ProximityPair& pieces : nearness_.near) add_place(pieces, SelfVerdict::near);
-    } else if (crossings_.empty()) {
+    } else if (contacts_.empty()) {
       for (const ProximityPair& pieces : nearness_.unresolved) add_place(pieces, SelfVerdict::undecided);
     }
     return answer_;
@@ -357,9 +369,10 @@ class SelfSearch {
   void add_place(const Found& found) {
     if (answer_.pairs.size() == SelfContact::max_pairs) return;
     SelfContactPair pair;
-    pair.verdict = !crossings_.empty() ? SelfVerdict::intersecting : SelfVerdict::undecided;
+    pair.verdict = !contacts_.empty() ? SelfVerdict::intersecting : SelfVerdict::undecided;
+    pair.touching = found.what == Found::What::touching;
     const double error = set_points(pair, {found.pieces.first, found.pieces.second}, found.at);
-    if (crossings_.empty()) {
+    if (contacts_.empty()) {
       pair.distance.upper = distance_at_most(pair.points[1].point - pair.points[0].point, enlarged(error));
     }
     answer_.pairs.push_back(pair);
@@ -382,7 +395,7 @@ class SelfSearch {
   const WorkMonitor& monitor_;
   LevelComplex complex_;
   std::uint64_t budget_;
-  std::vector<Found> crossings_, unknown_;
+  std::vector<Found> contacts_, unknown_;  // the first: where it certainly meets itself
   bool budget_spent_ = false;
   Nearness nearness_;
   SelfContact answer_;
