@@ -514,6 +514,32 @@ TEST(star, of_any_valence_to_32_is_injective_where_it_is_smooth) {
   }
 }
 
+// A crease ends at vertex 0, inside; or vertex 0 is a sharp corner of the border.
+TEST(star, at_a_dart_or_a_sharp_corner_is_injective) {
+  const auto height = [](double x, double y) { return 0.05 * (x * x + x * y); };
+  for (const bool triangles : {true, false}) {
+    const Scheme scheme = triangles ? Scheme::loop : Scheme::catmark;
+    for (std::uint32_t n = 3; n <= 10; ++n) {
+      auto dart = triangles ? disc(n, 1, height) : quad_disc(n, height);
+      const std::uint32_t around = triangles ? n : 2 * n;
+      for (std::uint32_t ring = 0; ring < 3; ++ring) {
+        const std::uint32_t here = 1 + ring * around;
+        dart.creases.push_back({ring == 0 ? 0 : here - around, here, 10});
+      }
+      const LimitSurface surface = surface_of(dart, scheme);
+      const CentreStar star = star_at_centre(surface, 3);
+      EXPECT_TRUE(certainly_injective(star.sectors, star.closed)) << name_of(scheme) << " dart of " << n;
+    }
+    for (std::uint32_t n = 1; n <= (triangles ? 5u : 3u); ++n) {
+      auto corner = half_disc(n, triangles, n < 3 ? 0.3 : 0.5, height);
+      corner.corners.push_back({0, 10});
+      const LimitSurface surface = surface_of(corner, scheme);
+      const CentreStar star = star_at_centre(surface, 4);
+      EXPECT_TRUE(certainly_injective(star.sectors, star.closed)) << name_of(scheme) << " corner of " << n;
+    }
+  }
+}
+
 // A fan over less than a whole turn at its centre that winds around further out, and inwards: it crosses its first spoke there. In the
 // plane it turns left everywhere, and its border once around points inside, all in all.
 TEST(star, that_winds_around_further_out_is_never_injective) {

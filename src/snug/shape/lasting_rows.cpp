@@ -145,35 +145,6 @@ std::optional<ExactRows> exact_rows(const Matrix& a, double eigenvalue) {
   return result;
 }
 
-// The inverse, about; empty if there is none.
-Matrix inverse(Matrix m) {
-  const std::size_t n = m.size();
-  Matrix result(n, Row(n, 0.0));
-  for (std::size_t k = 0; k < n; ++k) result[k][k] = 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t best = k;
-    for (std::size_t r = k; r < n; ++r) {
-      if (std::fabs(m[r][k]) > std::fabs(m[best][k])) best = r;
-    }
-    if (!(std::fabs(m[best][k]) > 1e-12)) return {};
-    std::swap(m[k], m[best]);
-    std::swap(result[k], result[best]);
-    const double pivot = 1 / m[k][k];
-    for (std::size_t c = 0; c < n; ++c) {
-      m[k][c] *= pivot;
-      result[k][c] *= pivot;
-    }
-    for (std::size_t r = 0; r < n; ++r) {
-      const double factor = r == k ? 0 : m[r][k];
-      for (std::size_t c = 0; factor != 0 && c < n; ++c) {
-        m[r][c] -= factor * m[k][c];
-        result[r][c] -= factor * result[k][c];
-      }
-    }
-  }
-  return result;
-}
-
 double norm(const Matrix& m) {
   double largest = 0;
   for (const Row& row : m) {
@@ -202,7 +173,7 @@ bool verify(const Matrix& a, double a_error, Pair& pair) {
     j[c][n] = -pair.row[c];
     j[n][c] = pair.row[c] / square;
   }
-  const Matrix inverted = inverse(j);
+  const Matrix inverted = about_inverse(j);
   if (inverted.empty()) return false;
   const double of_inverse = norm(inverted), of_derivative = norm(j);
   Row residual = times(pair.row, a);

@@ -35,6 +35,34 @@ double growth_of_rows(const std::vector<double>& matrix, std::size_t size) {
   return enlarged(0.5 * widest);
 }
 
+std::vector<std::vector<double>> about_inverse(std::vector<std::vector<double>> m) {
+  const std::size_t n = m.size();
+  std::vector<std::vector<double>> result(n, std::vector<double>(n, 0.0));
+  for (std::size_t k = 0; k < n; ++k) result[k][k] = 1;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t best = k;
+    for (std::size_t r = k; r < n; ++r) {
+      if (std::fabs(m[r][k]) > std::fabs(m[best][k])) best = r;
+    }
+    if (!(std::fabs(m[best][k]) > 1e-12)) return {};
+    std::swap(m[k], m[best]);
+    std::swap(result[k], result[best]);
+    const double pivot = 1 / m[k][k];
+    for (std::size_t c = 0; c < n; ++c) {
+      m[k][c] *= pivot;
+      result[k][c] *= pivot;
+    }
+    for (std::size_t r = 0; r < n; ++r) {
+      const double factor = r == k ? 0 : m[r][k];
+      for (std::size_t c = 0; factor != 0 && c < n; ++c) {
+        m[r][c] -= factor * m[k][c];
+        result[r][c] -= factor * result[k][c];
+      }
+    }
+  }
+  return result;
+}
+
 MatrixPower::MatrixPower(const Stencils& rows, std::size_t columns)
     : size(columns), matrix(columns * columns, 0.0), sum(rows.max_abs_sum()) {
   for (std::size_t r = 0; r < size; ++r) {

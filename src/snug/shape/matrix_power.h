@@ -11,6 +11,9 @@ namespace snug {
 /// of two rows in sum.
 [[nodiscard]] double growth_of_rows(const std::vector<double>& matrix, std::size_t size);
 
+/// The inverse of a matrix of rows, about; empty if there is none.
+[[nodiscard]] std::vector<std::vector<double>> about_inverse(std::vector<std::vector<double>> m);
+
 /// Powers of a square matrix, row by row.
 struct MatrixPower {
   std::size_t size;

@@ -69,7 +69,7 @@ class DecaySearch {
 
   [[nodiscard]] bool find(RingDecay& decay) {
     columns_ = dual_columns(lasting_.rows);
-    return !columns_.empty() && contracts(decay) && bound_seen(decay);
+    return !columns_.empty() && contracts(decay) && improve() && bound_seen(decay);
   }
 
  private:
@@ -107,6 +107,36 @@ class DecaySearch {
       if (!(scale > 1e-250) || !(decay.most < 1e9)) return false;
     }
     return false;
+  }
+
+  // Towards what lasts: A^64 V, made dual again. No proof rests on how near it comes.
+  bool improve() {
+    MatrixPower power(step_, size_);
+    power.remove(limit_);
+    for (int i = 0; i < 6; ++i) power.square();
+    const std::size_t m = columns_.size();
+    std::vector<Row> images(m, Row(size_, 0.0)), seen(m, Row(m, 0.0));
+    for (std::size_t t = 0; t < m; ++t) {
+      for (std::size_t r = 0; r < size_; ++r) {
+        for (std::size_t c = 0; c < size_; ++c) images[t][r] += power.matrix[r * size_ + c] * columns_[t][c];
+      }
+      // By powers of the eigenvalue all are tiny.
+      const double size = largest_of(images[t]);
+      if (!(size > 0)) return false;
+      for (double& x : images[t]) x /= size;
+      for (std::size_t k = 0; k < m; ++k) {
+        for (std::size_t i = 0; i < size_; ++i) seen[k][t] += lasting_.rows[k][i] * images[t][i];
+      }
+    }
+    const std::vector<Row> inverse = about_inverse(seen);
+    if (inverse.empty()) return true;
+    for (std::size_t t = 0; t < m; ++t) {
+      for (std::size_t i = 0; i < size_; ++i) {
+        columns_[t][i] = 0;
+        for (std::size_t k = 0; k < m; ++k) columns_[t][i] += images[k][i] * inverse[k][t];
+      }
+    }
+    return true;
   }
 
   // V' = V (W V)^-1 is about V. Any x is V' W x, and a rest that W does not see. With r = B V' - V' L / l, which W does not see, either,

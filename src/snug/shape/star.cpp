@@ -25,7 +25,7 @@ constexpr unsigned polynomial_levels = 2, border_levels = 3, decay_levels = 6;
 // Of a net that stands for all further rings of a map that is conformal, against its size: more would hardly do.
 constexpr double max_net_share = 0.02;
 // Rings that are looked at one by one.
-constexpr std::size_t max_rings = 120;
+constexpr std::size_t max_rings = 300;
 
 double largest_of(Point2 a) { return std::max(std::fabs(a.x), std::fabs(a.y)); }
 
