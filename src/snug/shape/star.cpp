@@ -269,7 +269,8 @@ class TurnAround {
   // Is it the end of a fan at an extraordinary corner? There it is one polynomial: of a boundary, or of a crease.
   static bool is_sharp_curve(const Patch& patch, unsigned corner, unsigned edge) {
     const CornerFan& fan = patch.kind->corner(patch.to_kind(corner));
-    return !fan.closed && is_face_edge(patch, edge) && (corner == edge ? fan.before : fan.after) == 0;
+    return !fan.closed && !fan.odd && is_face_edge(patch, edge) &&
+           (corner == edge ? fan.before : fan.after) == 0;
   }
   // Not the line through a quad that its halves share.
   static bool is_face_edge(const Patch& patch, unsigned edge) {
