@@ -118,7 +118,7 @@ SquareMatrix corner_matrix(Patch patch) {
     if (piece.kind == patch.kind && piece.first == patch.first) break;
     patch = std::move(piece);
   }
-  const Stencils& rows = patch.kind->children()[patch.to_kind(0)].stencils;
+  const Stencils rows = patch.kind->children()[patch.to_kind(0)].stencils();
   SquareMatrix matrix{rows.row_count(), std::vector<double>(rows.row_count() * rows.row_count())};
   for (std::size_t r = 0; r < rows.row_count(); ++r) {
     const Stencils::Row row = rows.row(r);

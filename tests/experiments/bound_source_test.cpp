@@ -23,8 +23,9 @@ TEST(characteristic_layout, shrinks_by_the_subdominant_eigenvalue) {
     const Kind& kind = library.find(key);
     const auto layout = characteristic_layout(kind);
     const auto origin = layout[centre];
+    const Stencils step = kind.children()[centre].stencils();
     for (std::size_t r = 0; r < layout.size(); ++r) {
-      const auto row = kind.children()[centre].stencils.row(r);
+      const auto row = step.row(r);
       for (std::size_t a = 0; a < 2; ++a) {
         double refined = 0;
         for (std::size_t i = 0; i < row.sources.size(); ++i)

@@ -139,7 +139,7 @@ void bounding_points(const BoundingRows& rows, const Patch& patch, BoundingPoint
 
 namespace {
 
-// The points of the parts of a patch of a kind that few share; `scratch` has a patch a level below.
+// The points of the parts of a patch of a kind that few share; `scratch` has four patches a level below.
 void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
                BoundingPoints& out) {
   const Kind& kind = *patch.kind;
@@ -156,17 +156,16 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
   if (level >= (kind.transient() ? transient_split_levels : high_valence_split_levels)) {
     return out.add(patch.points, patch.error, patch.largest);
   }
-  for (unsigned child = 0; child < 4; ++child) {
-    split(patch, child, scratch[0]);
-    add_parts(library, scratch[0], level + 1, scratch.subspan(1), out);
-  }
+  const std::span<Patch, 4> parts = scratch.first<4>();
+  split_into_four(patch, parts);
+  for (const Patch& part : parts) add_parts(library, part, level + 1, scratch.subspan(4), out);
 }
 
 }  // namespace
 
 void bounding_points(BoundsCache& library, const Patch& patch, BoundingPoints& out) {
   if (!patch.kind->cacheable()) {
-    thread_local std::array<Patch, high_valence_split_levels> scratch;
+    thread_local std::array<Patch, 4 * high_valence_split_levels> scratch;
     thread_local Patch whole;
     whole = patch;
     whole.path = {};  // a path may have no room for so many more digits

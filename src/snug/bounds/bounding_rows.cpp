@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
@@ -34,18 +35,32 @@ void append_all(const DenseRows& from, DenseRows& to) {
   }
 }
 
+void append(const DenseRows& from, std::size_t r, DenseRows& to) {
+  const auto first = from.entries.begin() + static_cast<std::ptrdiff_t>(r * from.width);
+  to.entries.insert(to.entries.end(), first, first + static_cast<std::ptrdiff_t>(from.width));
+  to.errors.push_back(from.errors[r]);
+  to.abs_sums.push_back(from.abs_sums[r]);
+}
+
+// The control net of a piece: rows of all new points of a step, and which of them are its own.
+struct Net {
+  const DenseRows& rows;
+  std::span<const std::uint32_t> control;
+};
+
 // The chosen rows of stencils * net, appended to out.
 //
 // For a row sum_k a_k N_k with a_k off by d_k and N_k off by e_k:  the sum of entries' errors is at most
 //   sum |a_k| e_k  +  sum d_k (|N_k| + e_k)  +  gamma(n) sum |a_k| |N_k|.
-void append_product(const Stencils& stencils, std::size_t r, const DenseRows& net, DenseRows& out) {
+void append_product(const Stencils& stencils, std::size_t r, const Net& of, DenseRows& out) {
   const Stencils::Row row = stencils.row(r);
+  const DenseRows& net = of.rows;
   const std::size_t begin = out.entries.size();
   out.entries.resize(begin + net.width);
   double* const __restrict target = out.entries.data() + begin;
   double error = 0, largest = 0, magnitude = 0;
   for (std::size_t i = 0; i < row.sources.size(); ++i) {
-    const std::size_t k = row.sources[i];
+    const std::size_t k = of.control[row.sources[i]];
     const double weight = row.weights[i];
     const double* const source = net.entries.data() + k * net.width;
     for (std::size_t c = 0; c < net.width; ++c) target[c] += weight * source[c];
@@ -62,10 +77,10 @@ void append_product(const Stencils& stencils, std::size_t r, const DenseRows& ne
 }
 
 // Writes stencils * net over `out`, which keeps its memory.
-void multiply(const Stencils& stencils, const DenseRows& net, DenseRows& out) {
-  out.width = net.width;
+void multiply(const Stencils& stencils, const Net& net, DenseRows& out) {
+  out.width = net.rows.width;
   for (std::vector<double>* part : {&out.entries, &out.errors, &out.abs_sums}) part->clear();
-  out.entries.reserve(stencils.row_count() * net.width);
+  out.entries.reserve(stencils.row_count() * out.width);
   for (std::size_t r = 0; r < stencils.row_count(); ++r) append_product(stencils, r, net, out);
 }
 
@@ -76,6 +91,36 @@ using CoveredEdges = std::array<bool, 3>;
 // Place (i, j) lies on the edge that faces corner k when its k-th barycentric index is 0.
 bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const CoveredEdges& covered) {
   return (covered[0] && i + j == degree) || (covered[1] && i == 0) || (covered[2] && j == 0);
+}
+
+// The middle one has the edges between it and others in the hull.
+constexpr std::array<std::size_t, 4> order_of_children{3, 0, 1, 2};
+
+// In the child's kind's order. In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
+// parent's.
+CoveredEdges covered_of_child(const Kind& kind, std::size_t c, const CoveredEdges& covered) {
+  const auto& children = kind.children();
+  CoveredEdges inherited = c < 3 ? covered : CoveredEdges{};
+  if (c < 3) inherited[c] = children[3].kind->polynomial();
+  CoveredEdges own;
+  for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + children[c].first) % 3];
+  return own;
+}
+
+// each(row of the form, its indices i and j, weights of a quadratic over the whole); a plane's points are no Bezier points of a higher degree.
+template <class Each>
+void for_each_bezier(const BezierRows& form, const CoveredEdges& covered, const ParameterTriangle& place,
+                     const Each& each) {
+  for (std::size_t part = 0; part < form.parts; ++part) {
+    const ParameterTriangle own = form.parts == 1 ? place : part_of(place, part);
+    for (std::size_t j = 0; j <= form.degree; ++j) {
+      for (std::size_t i = 0; i + j <= form.degree; ++i) {
+        if (form.parts == 1 && on_covered_edge(form.degree, i, j, covered)) continue;
+        each(part * bezier_count(form.degree) + bezier_index(form.degree, i, j), i, j,
+             form.degree < 2 ? QuadraticWeights{} : raised_quadratic(own, form.degree, i, j));
+      }
+    }
+  }
 }
 
 // Kinds that few patches share have rows of few levels, for tables alone.
@@ -95,42 +140,30 @@ class Collector {
   }
 
   // Rows of one piece; `covered` counts corners as the kind does.
-  void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered,
+  void collect(const Kind& kind, const Net& net, unsigned depth, const CoveredEdges& covered,
                const ParameterTriangle& place) {
     // A split brings Bezier points nearer, but for a plane.
     if (kind.polynomial() && (depth > 0 || kind.form().degree == 1)) {
-      const BezierRows& form = kind.form();
-      for (std::size_t part = 0; part < form.parts; ++part) {
-        for (std::size_t j = 0; j <= form.degree; ++j) {
-          for (std::size_t i = 0; i + j <= form.degree; ++i) {
-            if (form.parts == 1 && on_covered_edge(form.degree, i, j, covered)) continue;
-            const std::size_t row = part * bezier_count(form.degree) + bezier_index(form.degree, i, j);
-            append_product(form.rows, row, net, rows_);
-            add_quadratic(form.parts == 1 ? place : part_of(place, part), form.degree, i, j);
-          }
-        }
-      }
+      for_each_bezier(kind.form(), covered, place,
+                      [&](std::size_t row, std::size_t, std::size_t, const QuadraticWeights& quadratic) {
+                        append_product(kind.form().rows, row, net, rows_);
+                        quadratic_.push_back(quadratic);
+                      });
       return;
     }
     if (depth >= depth_limit(kind, depth)) {
       nets_found_.push_back({&kind, tips_.count(), place});
-      return append_all(net, tips_);
+      for (const std::uint32_t r : net.control) append(net.rows, r, tips_);
+      return;
     }
     const auto& children = kind.children();
-    const bool middle_polynomial = children[3].kind->polynomial();
+    multiply(*children[0].step, net, nets_[depth]);
     for (const bool polynomial : {true, false}) {
-      for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+      for (const std::size_t c : order_of_children) {
         const KindChild& child = children[c];
         if (child.kind->polynomial() != polynomial) continue;
-        // In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
-        // parent's.
-        CoveredEdges inherited = c < 3 ? covered : CoveredEdges{};
-        if (c < 3) inherited[c] = middle_polynomial;
-        CoveredEdges own;
-        for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
-        DenseRows& child_net = nets_[depth];
-        multiply(child.stencils, net, child_net);
-        collect(*child.kind, child_net, depth + 1, own, turned(child_of(place, c), child.first));
+        collect(*child.kind, {nets_[depth], child.control}, depth + 1, covered_of_child(kind, c, covered),
+                turned(child_of(place, c), child.first));
       }
     }
   }
@@ -165,16 +198,11 @@ class Collector {
     return limit > 0 ? limit : depth + 1;
   }
 
-  // A plane's points are no Bezier points of a higher degree.
-  void add_quadratic(const ParameterTriangle& piece, std::size_t degree, std::size_t i, std::size_t j) {
-    quadratic_.push_back(degree < 2 ? QuadraticWeights{} : raised_quadratic(piece, degree, i, j));
-  }
-
   unsigned max_levels_;
   DenseRows rows_, tips_;
   std::vector<QuadraticWeights> quadratic_;
   std::vector<BoundingRows::Net> nets_found_;
-  std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
+  std::array<DenseRows, deepest_tip + 2> nets_;  // new points of the piece at work, a depth each
 };
 
 // Is the piece at a corner, from the third level on, of a kind that comes again? Its other corners are
@@ -224,7 +252,10 @@ unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
 BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels) {
   SNUG_EXPECT(!kind.key().polygon);
   Collector collector(kind, max_levels);
-  collector.collect(kind, identity(kind.control_count()), 0, {}, whole_patch);
+  const DenseRows control = identity(kind.control_count());
+  std::vector<std::uint32_t> all(kind.control_count());
+  std::iota(all.begin(), all.end(), 0u);
+  collector.collect(kind, {control, all}, 0, {}, whole_patch);
   const DenseRows rows = collector.take();
   BoundingRows result;
   result.count_ = rows.count();
@@ -244,6 +275,53 @@ BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels) {
   result.nets_ = collector.nets();
   result.self_similar_ = !kind.polynomial() && has_self_similar_tips(kind);
   return result;
+}
+
+namespace {
+
+void append_renamed(const Stencils::Row& row, std::span<const std::uint32_t> names, Stencils& out) {
+  for (std::size_t i = 0; i < row.sources.size(); ++i) {
+    out.add(names[row.sources[i]], row.weights[i], i == 0 ? row.error : 0.0);
+  }
+  out.end_row();
+}
+
+}  // namespace
+
+std::size_t LevelStep::bytes() const {
+  std::size_t bytes = points.bytes() + bezier.bytes() + quadratic.size() * sizeof(QuadraticWeights);
+  for (const Net& net : nets) bytes += sizeof(Net) + net.control.size() * sizeof(std::uint32_t);
+  return bytes;
+}
+
+LevelStep make_level_step(const Kind& kind) {
+  const std::vector<KindChild>& children = kind.children();
+  LevelStep step;
+  step.points = *children[0].step;
+  CoveredEdges facing{};
+  for (std::size_t c = 0; c < children.size(); ++c) {
+    if (children[c].kind->polynomial()) continue;
+    step.nets.push_back({children[c].kind, children[c].control, c, (3 + c - children[c].first) % 3});
+    if (c < 3) facing[c] = true;
+  }
+  if (step.nets.size() != 1) facing = {};
+  for (const bool inner : {true, false}) {
+    for (const std::size_t c : order_of_children) {
+      const KindChild& child = children[c];
+      if (!child.kind->polynomial()) continue;
+      const BezierRows& form = child.kind->form();
+      const CoveredEdges own = covered_of_child(kind, c, {}), beyond = covered_of_child(kind, c, facing);
+      for_each_bezier(form, own, turned(child_of(whole_patch, c), child.first),
+                      [&](std::size_t row, std::size_t i, std::size_t j, const QuadraticWeights& quadratic) {
+                        const bool faces = form.parts == 1 && on_covered_edge(form.degree, i, j, beyond);
+                        if (faces == inner) return;
+                        append_renamed(form.rows.row(row), child.control, step.bezier);
+                        step.quadratic.push_back(quadratic);
+                      });
+    }
+    if (inner) step.inner = step.bezier.row_count();
+  }
+  return step;
 }
 
 BoundingRows polynomial_rows(std::size_t control_count, std::span<const double> weights, double entry_error,

@@ -73,6 +73,31 @@ inline constexpr unsigned deepest_tip = 24;
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
 [[nodiscard]] BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels = deepest_tip);
 
+/// The rows of one level of a kind as two sparse products, which take a third of the operations.
+/// Source:    derivations/quadratics.md, "Many patches at once".
+struct LevelStep {
+  Stencils points;                          ///< new control points, each once, from the control points
+  Stencils bezier;                          ///< rows of Bezier points from the new points
+  std::vector<QuadraticWeights> quadratic;  ///< as BoundingRows::quadratic(), Bezier point by Bezier point
+  /// Those after so many lie on the side that faces the corner of the only net: they are in the hull of a polynomial beyond it.
+  std::size_t inner = 0;
+  /// The control net of a piece that is no polynomial, among the new points.
+  struct Net {
+    const Kind* kind;
+    std::vector<std::uint32_t> control;
+    std::size_t corner,
+        own;  ///< which child it is, and the number of its corner at that one's corner in its own kind
+  };
+  std::vector<Net> nets;
+  [[nodiscard]] std::size_t bytes() const;
+  /// Has it one net alone, at a corner?
+  [[nodiscard]] bool goes_to(std::size_t corner) const {
+    return nets.size() == 1 && nets[0].corner == corner && corner < 3;
+  }
+};
+/// Requires:  a kind that is no polynomial, a patch.
+[[nodiscard]] LevelStep make_level_step(const Kind& kind);
+
 /// Rows of Bezier points alone, from their weights row by row, entry_error() and what quadratic() has of each.
 [[nodiscard]] BoundingRows polynomial_rows(std::size_t control_count, std::span<const double> weights,
                                            double entry_error, std::span<const QuadraticWeights> quadratic);

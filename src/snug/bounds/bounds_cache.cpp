@@ -21,6 +21,10 @@ const BoundingRows& BoundsCache::level_rows(const Kind& kind) {
   return level_rows_.get(kind.id(), [&] { return make_bounding_rows(kind, 1); });
 }
 
+const LevelStep& BoundsCache::level_step(const Kind& kind) {
+  return level_steps_.get(kind.id(), [&] { return make_level_step(kind); });
+}
+
 const BoundTable& BoundsCache::table(const Kind& kind) {
   return tables_.get(kind.id(), [&] { return make_bound_table(kind, make_bounding_rows(kind)); });
 }

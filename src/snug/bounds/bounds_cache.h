@@ -25,6 +25,7 @@ class BoundsCache {
   explicit BoundsCache(std::size_t max_bytes_of_rows = std::size_t{256} << 20)
       : rows_(max_bytes_of_rows),
         level_rows_(max_bytes_of_rows),
+        level_steps_(max_bytes_of_rows),
         direct_rows_(max_bytes_of_rows),
         tip_tables_(max_bytes_of_rows),
         quadratics_(max_bytes_of_rows) {}
@@ -37,6 +38,8 @@ class BoundsCache {
   [[nodiscard]] const BoundingRows& rows(const Kind& kind);
   /// One level of them.
   [[nodiscard]] const BoundingRows& level_rows(const Kind& kind);
+  /// The same in two factors.
+  [[nodiscard]] const LevelStep& level_step(const Kind& kind);
   /// Rows of a patch that is one polynomial or a few, without a split: of polynomial kinds of degree 2
   /// and more, and those of make_crease_rows(). Null for others.
   [[nodiscard]] const BoundingRows* direct_rows(const Kind& kind);
@@ -50,13 +53,14 @@ class BoundsCache {
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const {
-    return rows_.bytes() + direct_rows_.bytes() + level_rows_.bytes() + tables_.bytes() +
-           tip_tables_.bytes() + quadratics_.bytes();
+    return rows_.bytes() + direct_rows_.bytes() + level_rows_.bytes() + level_steps_.bytes() +
+           tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes();
   }
 
  private:
   KindCache kinds_;
   KindSlots<BoundingRows> rows_, level_rows_;
+  KindSlots<LevelStep> level_steps_;
   KindSlots<CreaseRows> direct_rows_;
   KindSlots<BoundTable> tables_;
   KindSlots<TipTable> tip_tables_;

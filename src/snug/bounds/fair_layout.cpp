@@ -125,8 +125,7 @@ void add_limits(const Kind& kind, std::size_t first, const PiecePath& path, cons
   for (std::size_t c = 0; c < 4; ++c) {
     const KindChild& child = kind.children()[c];
     Net refined;
-    for (std::size_t r = 0; r < child.stencils.row_count(); ++r)
-      refined.push_back(product(child.stencils.row(r), net));
+    for (const std::uint32_t r : child.control) refined.push_back(product(child.step->row(r), net));
     const unsigned digit = c < 3 ? static_cast<unsigned>((c + first) % 3) : 3;
     add_limits(*child.kind, (child.first + first) % 3, path.child(digit), refined, done, places);
   }

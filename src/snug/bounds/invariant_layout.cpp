@@ -126,6 +126,7 @@ std::vector<LayoutPoint> invariant_layout(const Kind& kind) {
   // the tangent sees most of.
   const std::vector<LayoutPoint> start = make_layout(kind);
   std::vector<LayoutPoint> layout(start.size());
+  const Stencils step = again->stencils();
   for (std::size_t a = 0; a < 2; ++a) {
     const Stencils::Row tangent = kind.corner_tangents().row(2 * corner + a);
     LayoutPoint seen{0, 0};
@@ -134,7 +135,7 @@ std::vector<LayoutPoint> invariant_layout(const Kind& kind) {
     }
     std::vector<double> x;
     for (const LayoutPoint& at : start) x.push_back(seen[0] * at[0] + seen[1] * at[1]);
-    project_on_eigenvectors(again->stencils, eigenvalue_of(tangent, again->stencils), x);
+    project_on_eigenvectors(step, eigenvalue_of(tangent, step), x);
     for (std::size_t i = 0; i < x.size(); ++i) layout[i][a] = x[i];
   }
   if (!normalise(limits_of(kind, layout), layout)) return {};

@@ -25,12 +25,38 @@ std::optional<BezierRows> polynomial_form(const KindKey& key) {
   return rules.bezier(rules.ring(key.corners), fans);
 }
 
+// Rows of new points in the order in which they are first asked for.
+class NewPoints {
+ public:
+  explicit NewPoints(const RefinedTopology& refined)
+      : refined_(refined.stencils), numbers_(refined.topology.vertex_count(), none) {}
+
+  [[nodiscard]] std::vector<std::uint32_t> numbers(std::span<const VertexId> vertices) {
+    std::vector<std::uint32_t> numbers;
+    for (const VertexId v : vertices) {
+      std::uint32_t& number = numbers_[v.index()];
+      if (number == none) {
+        number = static_cast<std::uint32_t>(rows_.row_count());
+        rows_.append(refined_.row(v.index()));
+      }
+      numbers.push_back(number);
+    }
+    return numbers;
+  }
+  [[nodiscard]] Stencils take() { return std::move(rows_); }
+
+ private:
+  static constexpr std::uint32_t none = UINT32_MAX;
+  const Stencils& refined_;
+  std::vector<std::uint32_t> numbers_;
+  Stencils rows_;
+};
+
 std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
   const Neighbourhood around = neighbourhood(key);
-  RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
+  const RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
   const SchemeRules& rules = rules_of(key.scheme);
-  std::shared_ptr<const Stencils> polygon_step;
-  if (key.polygon) polygon_step = std::make_shared<const Stencils>(std::move(refined.stencils));
+  NewPoints points(refined);
   const std::vector<HalfEdge> starts = rules.child_starts(around.topology, refined.topology);
   std::vector<KindChild> children(starts.size());
   std::vector<VertexId> control;
@@ -42,52 +68,37 @@ std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
     children[k].kind = &library.find(child.key);
     children[k].kind->control_vertices(refined.topology, starts[k] + child.first, control);
     children[k].first = child.first;
-    if (key.polygon) {
-      children[k].polygon_step = polygon_step;
-      for (const VertexId v : control) children[k].control.push_back(static_cast<std::uint32_t>(v.index()));
-      continue;
-    }
-    std::size_t entries = 0;
-    for (const VertexId v : control) entries += refined.stencils.row(v.index()).sources.size();
-    children[k].stencils.reserve(control.size(), entries);
-    for (const VertexId v : control) children[k].stencils.append(refined.stencils.row(v.index()));
+    children[k].control = points.numbers(control);
   }
+  const auto step = std::make_shared<const Stencils>(points.take());
+  for (KindChild& child : children) child.step = step;
   return children;
 }
 
-// Combinations of control points as rows of new points; those that are no control points are ghosts.
-class NewPoints {
+// Adds points of lattices that are no control points to a step: combinations of new points.
+class Ghosts {
  public:
-  NewPoints(const Stencils& refined, KindStep& out) : refined_(refined), out_(out) {}
+  explicit Ghosts(KindStep& step) : step_(step) {}
 
-  // The number of a control point of the refined mesh.
-  std::uint32_t control(VertexId v) {
-    const auto [it, added] =
-        numbers_.try_emplace(v.value(), static_cast<std::uint32_t>(out_.stencils.row_count()));
-    if (added) out_.stencils.append(refined_.row(v.index()));
-    return it->second;
-  }
-  // The number, among ghosts, of a combination of such points. Pieces beside each other share them.
-  std::uint32_t ghost(const Combination& weights, std::span<const VertexId> of) {
+  // Pieces beside each other share them.
+  std::uint32_t number(const Combination& weights, std::span<const std::uint32_t> of) {
     std::vector<std::pair<std::uint32_t, int>> name;
     for (std::size_t c = 0; c < weights.size(); ++c) {
-      if (weights[c] != 0) name.emplace_back(of[c].value(), weights[c]);
+      if (weights[c] != 0) name.emplace_back(of[c], weights[c]);
     }
     std::sort(name.begin(), name.end());
-    const auto [it, added] = ghosts_.try_emplace(name, static_cast<std::uint32_t>(out_.ghosts.row_count()));
+    const auto [it, added] = numbers_.try_emplace(name, static_cast<std::uint32_t>(step_.ghosts.row_count()));
     if (added) {
       RowBuilder row;
-      for (const auto& [v, weight] : name) row.add(Interval(weight), refined_.row(v));
-      row.end_row(out_.ghosts);
+      for (const auto& [point, weight] : name) row.add(Interval(weight), step_.stencils.row(point));
+      row.end_row(step_.ghosts);
     }
     return it->second;
   }
 
  private:
-  const Stencils& refined_;
-  KindStep& out_;
-  std::map<std::uint32_t, std::uint32_t> numbers_;
-  std::map<std::vector<std::pair<std::uint32_t, int>>, std::uint32_t> ghosts_;
+  KindStep& step_;
+  std::map<std::vector<std::pair<std::uint32_t, int>>, std::uint32_t> numbers_;
 };
 
 // Is the combination one of the points itself?
@@ -103,36 +114,42 @@ Lattice lattice_of(const KindKey& key) {
   return rules.lattice(rules.ring(key.corners), fans);
 }
 
-KindStep make_step(KindCache& library, const KindKey& key) {
+// Of quads, whose quarters are no children.
+void make_quarters(KindCache& library, const KindKey& key, KindStep& step) {
   const Neighbourhood around = neighbourhood(key);
   const RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
-  const SchemeRules& rules = rules_of(key.scheme);
-  KindStep step;
-  NewPoints points(refined.stencils, step);
-  std::array<std::vector<VertexId>, 4> control;
+  NewPoints points(refined);
+  std::vector<VertexId> control;
   for (std::size_t k = 0; k < 4; ++k) {
-    HalfEdge start = static_cast<HalfEdge>(3 * k);
-    TurnedKey name;
-    if (rules.triangular()) {
-      name = kind_key(refined.topology, FaceId(k), around.options, refined.sharpness);
-    } else {
-      start = rules.quarter_start(around.topology, refined.topology, k);
-      name.key = kind_key_from(refined.topology, start, around.options, refined.sharpness);
-    }
+    const HalfEdge start = rules_of(key.scheme).quarter_start(around.topology, refined.topology, k);
     KindStep::Piece& piece = step.pieces[k];
-    piece.kind = &library.find(name.key);
-    piece.first = name.first;
-    piece.kind->control_vertices(refined.topology, start + name.first, control[k]);
-    for (const VertexId v : control[k]) piece.control.push_back(points.control(v));
+    piece.kind = &library.find(kind_key_from(refined.topology, start, around.options, refined.sharpness));
+    piece.first = 0;
+    piece.kind->control_vertices(refined.topology, start, control);
+    piece.control = points.numbers(control);
+  }
+  step.stencils = points.take();
+}
+
+KindStep make_step(KindCache& library, const Kind& kind) {
+  KindStep step;
+  if (kind.rules().triangular()) {
+    const std::vector<KindChild>& children = kind.children();
+    for (std::size_t k = 0; k < 4; ++k) {
+      step.pieces[k] = {children[k].kind, children[k].first, children[k].control, {}};
+    }
+    step.stencils = *children[0].step;
+  } else {
+    make_quarters(library, kind.key(), step);
   }
   const auto count = static_cast<std::uint32_t>(step.stencils.row_count());
-  for (std::size_t k = 0; k < 4; ++k) {
-    KindStep::Piece& piece = step.pieces[k];
+  Ghosts ghosts(step);
+  for (KindStep::Piece& piece : step.pieces) {
     if (!piece.kind->polynomial()) continue;
     for (const Combination& weights : lattice_of(piece.kind->key())) {
       std::size_t which = 0;
       piece.lattice.push_back(is_unit(weights, which) ? piece.control[which]
-                                                      : count + points.ghost(weights, control[k]));
+                                                      : count + ghosts.number(weights, piece.control));
     }
   }
   return step;
@@ -167,16 +184,20 @@ double largest_value(const Kind& kind, const std::vector<Vector3>& values, unsig
   }
   std::vector<Vector3> child_values;
   for (const KindChild& child : kind.children()) {
-    child_values.resize(child.stencils.row_count());
-    for (std::size_t r = 0; r < child_values.size(); ++r) {
-      child_values[r] = child.stencils.apply<Vector3>(r, values);
-    }
+    child_values.clear();
+    for (const std::uint32_t r : child.control) child_values.push_back(child.step->apply<Vector3>(r, values));
     largest = std::max(largest, largest_value(*child.kind, child_values, levels - 1));
   }
   return largest;
 }
 
 }  // namespace
+
+Stencils KindChild::stencils() const {
+  Stencils own;
+  for (const std::uint32_t r : control) own.append(step->row(r));
+  return own;
+}
 
 Kind::Kind(KindCache& library, KindId id, const KindKey& key) : Kind(library, id, key, neighbourhood(key)) {}
 
@@ -213,7 +234,7 @@ const Stencils& Kind::corner_limits() const {
       if (rules().add_corner_limit(around.ruled(), corner, limits)) continue;
       if (transient_) {  // the child at the corner shares the work with other patches
         const KindChild& child = children()[i];
-        add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {}, limits);
+        add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils(), {}, limits);
       } else {
         rules().add_limit_row(around.ruled(), around.topology.from(corner), limits);
       }
@@ -268,7 +289,7 @@ const KindLattice& Kind::lattice() const {
 
 const KindStep& Kind::step() const {
   SNUG_EXPECT(!key_.polygon && !polynomial());
-  return step_.get([&] { return make_step(library_, key_); });
+  return step_.get([&] { return make_step(library_, *this); });
 }
 
 const Kind::FarCorner& Kind::far_corner() const {

@@ -23,11 +23,12 @@ using KindId = Id<struct KindTag>;
 struct KindChild {
   const Kind* kind;
   std::uint8_t
-      first;          ///< corner of the child, in the parent's order (scheme/refine.h), that its kind calls 0
-  Stencils stencils;  ///< its control points from the parent's; none of a polygon's
-  /// Of a polygon's, whose edge points each have all corners as sources: its control points among the new ones.
-  std::shared_ptr<const Stencils> polygon_step{};
-  std::vector<std::uint32_t> control{};
+      first;  ///< corner of the child, in the parent's order (scheme/refine.h), that its kind calls 0
+  /// New control points from those of the parent, each once: the same for all its children.
+  std::shared_ptr<const Stencils> step;
+  std::vector<std::uint32_t> control;  ///< its control points among them
+  /// Its control points from the parent's, alone.
+  [[nodiscard]] Stencils stencils() const;
 };
 
 /// One step of subdivision of a whole patch, or of the whole quad that it is half of: each new point once.
@@ -38,7 +39,7 @@ struct KindStep {
     std::vector<std::uint32_t> control;  ///< its control points among the new ones
     std::vector<std::uint32_t> lattice;  ///< if it is polynomial, its lattice likewise
   };
-  Stencils stencils;  ///< new control points from those of the patch
+  Stencils stencils;  ///< new control points from those of the patch; of triangles those of children()
   Stencils ghosts;    ///< likewise: points of lattices that are no control points, numbered after these
   /// Of triangles the four children; of quads the quarters at the corners, all corners in their places.
   std::array<Piece, 4> pieces;

@@ -55,7 +55,10 @@ Patch split(const Patch& patch, unsigned child) {
   return piece;
 }
 
-void split(const Patch& patch, unsigned child, Patch& piece) {
+namespace {
+
+// All of a child but its points.
+const KindChild& begin_child(const Patch& patch, unsigned child, Patch& piece) {
   const bool polygon = patch.kind->key().polygon;
   const std::vector<KindChild>& children = patch.kind->children();
   SNUG_EXPECT(child < children.size() && patch.points.size() == patch.kind->control_count() &&
@@ -65,15 +68,39 @@ void split(const Patch& patch, unsigned child, Patch& piece) {
   piece.first = static_cast<std::uint8_t>((step.first + patch.first) % 3);
   piece.path = polygon ? patch.path : patch.path.child(child);
   piece.origin = patch.origin;
-  const Stencils& stencils = polygon ? *step.polygon_step : step.stencils;
-  piece.points.resize(step.kind->control_count());
+  piece.error = step.step->result_error(patch.largest, patch.error);
+  piece.points.resize(step.control.size());
+  return step;
+}
+
+// `point(r)`: new point r.
+template <class PointOf>
+void take_points(const KindChild& child, Patch& piece, const PointOf& point) {
   Largest largest;
-  for (std::size_t i = 0; i < piece.points.size(); ++i) {
-    piece.points[i] = stencils.apply<Vector3>(polygon ? step.control[i] : i, patch.points);
+  for (std::size_t i = 0; i < child.control.size(); ++i) {
+    piece.points[i] = point(child.control[i]);
     largest.add(piece.points[i]);
   }
   piece.largest = largest.get();
-  piece.error = stencils.result_error(patch.largest, patch.error);
+}
+
+}  // namespace
+
+void split(const Patch& patch, unsigned child, Patch& piece) {
+  const KindChild& step = begin_child(patch, child, piece);
+  take_points(step, piece, [&](std::uint32_t r) { return step.step->apply<Vector3>(r, patch.points); });
+}
+
+void split_into_four(const Patch& patch, std::span<Patch, 4> pieces) {
+  SNUG_EXPECT(!patch.kind->key().polygon);
+  thread_local std::vector<Vector3> points;
+  const Stencils& step = *patch.kind->children()[0].step;
+  points.resize(step.row_count());
+  for (std::size_t r = 0; r < points.size(); ++r) points[r] = step.apply<Vector3>(r, patch.points);
+  for (unsigned child = 0; child < 4; ++child) {
+    take_points(begin_child(patch, child, pieces[child]), pieces[child],
+                [&](std::uint32_t r) { return points[r]; });
+  }
 }
 
 }  // namespace snug

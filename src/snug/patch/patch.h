@@ -40,5 +40,7 @@ void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> al
 [[nodiscard]] Patch split(const Patch& patch, unsigned child);
 /// The same, written over `piece`, which keeps its memory.
 void split(const Patch& patch, unsigned child, Patch& piece);
+/// All four pieces of a patch, the same ones, at less than half the cost: each new point is made once.
+void split_into_four(const Patch& patch, std::span<Patch, 4> pieces);
 
 }  // namespace snug

@@ -36,6 +36,10 @@ class Stencils {
   void append(const Row& row);
 
   [[nodiscard]] std::size_t row_count() const { return offsets_.size() - 1; }
+  [[nodiscard]] std::size_t bytes() const {
+    return (offsets_.size() + sources_.size()) * sizeof(std::uint32_t) +
+           (weights_.size() + errors_.size() + abs_sums_.size()) * sizeof(double);
+  }
   [[nodiscard]] Row row(std::size_t r) const {
     const std::size_t begin = offsets_[r], count = offsets_[r + 1] - begin;
     return {{sources_.data() + begin, count}, {weights_.data() + begin, count}, errors_[r], abs_sums_[r]};

@@ -7,7 +7,7 @@ namespace {
 
 SplitNode split_node(const SurfaceBvh& model, const Patch& parent) {
   thread_local std::array<Patch, 4> children;
-  for (unsigned i = 0; i < 4; ++i) split(parent, i, children[i]);
+  split_into_four(parent, children);
   std::array<PieceBuild, 4> pieces;
   build_pieces(model.surface().library(), children, model.method(), pieces);
   return SplitNode(pieces);

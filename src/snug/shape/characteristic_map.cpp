@@ -221,8 +221,8 @@ std::optional<CharacteristicMap> make_characteristic_map(const Kind& kind) {
     map.kind_ = &kind;
     map.corner_ = corner;
     map.size_ = kind.control_count();
-    if (map.find_eigenvalues(kind, child.stencils) && map.find_directions(child.stencils) &&
-        map.bound_remainders(child.stencils)) {
+    const Stencils step = child.stencils();
+    if (map.find_eigenvalues(kind, step) && map.find_directions(step) && map.bound_remainders(step)) {
       return map;
     }
     return std::nullopt;
@@ -247,7 +247,7 @@ RingDecay CharacteristicMap::decay() const {
 // shrink what these leave. `rest` is r up to extents of `error`.
 double CharacteristicMap::largest_rest(std::vector<double> rest, double error) const {
   constexpr int powers = 16;
-  const Stencils& step = kind_->children()[corner_].stencils;
+  const Stencils step = kind_->children()[corner_].stencils();
   const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
   const double rounding = step.max_error() + gamma_bound(size_ + 2) * step.max_abs_sum();
   double best = INFINITY, before = 0, scale = 1;

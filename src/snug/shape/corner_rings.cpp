@@ -24,7 +24,8 @@ void centre(std::vector<double>& values) {
 
 }  // namespace
 
-CornerRings::CornerRings(const RingDecay& decay, const Patch& values) : decay_(&decay), values_(&values) {
+CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
+    : decay_(&decay), step_(decay.kind->children()[decay.corner].stencils()), values_(&values) {
   least_off_ = enlarged((decay.least.upper - decay.least.lower) / decay.least.lower);
   Level first;
   for (std::size_t c = 0; c < 2; ++c) {
@@ -54,20 +55,19 @@ CornerRings::CornerRings(const RingDecay& decay, const Patch& values) : decay_(&
 // One level on, over a number near the eigenvalue: levels are scaled anyhow. Of an error what the rows see grows as they do.
 void CornerRings::descend() {
   const RingDecay& decay = *decay_;
-  const Stencils& step = decay.kind->children()[decay.corner].stencils;
   const double least = middle(decay.least);
   const std::size_t size = values_->points.size();
   const Level& before = levels_.back();
   Level next;
   const double largest = before.largest / least;
   for (std::size_t c = 0; c < 2; ++c) {
-    apply(step, before.values[c], next.values[c]);
+    apply(step_, before.values[c], next.values[c]);
     for (double& x : next.values[c]) x /= least;
     centre(next.values[c]);
     next.largest = std::max(next.largest, largest_of(next.values[c]));
   }
   const double off =
-      (step.max_error() + gamma_bound(size + 6) * (step.max_abs_sum() + step.max_error())) * largest;
+      (step_.max_error() + gamma_bound(size + 6) * (step_.max_abs_sum() + step_.max_error())) * largest;
   all_off_ = enlarged(all_off_ + off);
   growing_off_ = enlarged(decay.ratio.upper * growing_off_ + off);
   // Chains grow as the number of steps does.

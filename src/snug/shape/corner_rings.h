@@ -46,6 +46,7 @@ class CornerRings {
   void add_up(std::vector<double> parts);
 
   const RingDecay* decay_;
+  Stencils step_;
   const Patch* values_;
   Interval ratio_{1};     // of the larger eigenvalue to the other one
   double least_off_ = 0;  // of that one, relative to it

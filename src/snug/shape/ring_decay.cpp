@@ -196,13 +196,14 @@ std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicM
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
     if (kind.regular_corner(corner) || child.kind != &kind || child.first != 0) continue;
-    const std::optional<LastingRows> lasting = find_lasting_rows(child.stencils, kind.control_count());
+    const Stencils step = child.stencils();
+    const std::optional<LastingRows> lasting = find_lasting_rows(step, kind.control_count());
     if (!lasting) return std::nullopt;
     RingDecay decay{&kind, corner, lasting->least, lasting->ratio};
     if (lasting->chained || lasting->ratio.lower > 1) {
       decay.growth = lasting->links > 1 ? RingDecay::Growth::of_some : RingDecay::Growth::of_one;
     }
-    if (!DecaySearch(child.stencils, kind.corner_limits().row(corner), *lasting).find(decay))
+    if (!DecaySearch(step, kind.corner_limits().row(corner), *lasting).find(decay))
       return std::nullopt;
     return decay;
   }
