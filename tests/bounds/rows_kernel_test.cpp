@@ -23,10 +23,10 @@ struct Batch {
   std::vector<Point3> points;
   std::vector<VertexId> control;
   [[nodiscard]] std::vector<OffsetTriangle> fits(const kernels::RowsWithTips& rows, std::size_t begin,
-                                                 std::size_t end) const {
+                                                 std::size_t end, unsigned levels = 3) const {
     std::vector<OffsetTriangle> out(end - begin);
-    const std::size_t n = rows.control_count();
-    kernels::fit_rows(rows, points, std::span(control).subspan(begin * n, out.size() * n), out);
+    const std::size_t n = rows.kind().control_count();
+    kernels::fit_rows(rows, levels, points, std::span(control).subspan(begin * n, out.size() * n), out);
     return out;
   }
 };
@@ -51,11 +51,11 @@ Batch batch(const Kind& kind, std::size_t count, std::mt19937_64& random) {
   return result;
 }
 
-std::vector<const Kind*> kinds(KindCache& cache) {
+std::vector<const Kind*> kinds(BoundsCache& library) {
   std::vector<const Kind*> all;
   for (const KindKey& key : testing::assorted_kinds()) {
-    const Kind& kind = cache.find(key);
-    if (kernels::RowsWithTips::fit(kind)) all.push_back(&kind);
+    const Kind& kind = library.kinds().find(key);
+    if (kernels::RowsWithTips::fit(library, kind)) all.push_back(&kind);
   }
   return all;
 }
@@ -92,11 +92,11 @@ TEST(fit_rows, holds_the_limit_patch) {
   std::mt19937_64 random(81);
   BoundsCache library;
   std::size_t answered = 0, asked = 0;
-  for (const Kind* kind : kinds(library.kinds())) {
+  for (const Kind* kind : kinds(library)) {
     const Batch b = batch(*kind, 21, random);
-    for (const unsigned levels : {1u, 3u}) {
-      const kernels::RowsWithTips rows(library, *kind, levels);
-      const auto fits = b.fits(rows, 0, 21);
+    const kernels::RowsWithTips rows(library, *kind);
+    for (const unsigned levels : {3u, 4u, 6u}) {
+      const auto fits = b.fits(rows, 0, 21, levels);
       for (const OffsetTriangle& fit : fits) answered += fit.radius >= 0;
       asked += fits.size();
       expect_limits_inside(*kind, b, fits);
@@ -114,10 +114,11 @@ TEST(fit_rows, holds_patches_of_all_schemes) {
     std::set<const Kind*> seen;
     testing::for_each_patch(named.surface, [&](PatchId p) {
       const Kind& kind = named.surface.kind(p);
-      if (answered > testing::fewer(3000) || !kernels::RowsWithTips::fit(kind) || !seen.insert(&kind).second)
+      if (answered > testing::fewer(3000) || !kernels::RowsWithTips::fit(named.surface.library(), kind) ||
+          !seen.insert(&kind).second)
         return;
       const Batch b = batch(kind, 5, random);
-      const auto fits = b.fits(kernels::RowsWithTips(named.surface.library(), kind, 3), 0, 5);
+      const auto fits = b.fits(kernels::RowsWithTips(named.surface.library(), kind), 0, 5);
       expect_limits_inside(kind, b, fits);
       for (const OffsetTriangle& fit : fits) answered += fit.radius >= 0;
     });
@@ -128,8 +129,8 @@ TEST(fit_rows, holds_patches_of_all_schemes) {
 TEST(fit_rows, does_not_depend_on_the_patches_beside_it) {
   std::mt19937_64 random(84);
   BoundsCache library;
-  const Kind& kind = *kinds(library.kinds())[3];
-  const kernels::RowsWithTips rows(library, kind, 2);
+  const Kind& kind = *kinds(library)[3];
+  const kernels::RowsWithTips rows(library, kind);
   Batch b = batch(kind, 19, random);
   b.points[7].x = NAN;
   const auto together = b.fits(rows, 0, 19);
@@ -149,9 +150,9 @@ TEST(fit_rows, does_not_depend_on_the_patches_beside_it) {
 TEST(fit_rows, marks_what_is_not_finite) {
   std::mt19937_64 random(85);
   BoundsCache library;
-  for (const Kind* kind : kinds(library.kinds())) {
+  for (const Kind* kind : kinds(library)) {
     const std::size_t n = kind->control_count();
-    const kernels::RowsWithTips rows(library, *kind, 2);
+    const kernels::RowsWithTips rows(library, *kind);
     Batch b = batch(*kind, n, random);
     for (std::size_t i = 0; i < n; ++i) b.points[i * n + i].y = i % 2 ? NAN : INFINITY;
     for (const OffsetTriangle& fit : b.fits(rows, 0, n)) EXPECT_EQ(fit.radius, -1);
@@ -163,9 +164,9 @@ TEST(fit_rows, has_the_same_bits_on_every_instruction_set) {
   const auto everything = [&] {
     std::mt19937_64 random(86);
     std::vector<std::uint64_t> bits;
-    for (const Kind* kind : kinds(library.kinds())) {
+    for (const Kind* kind : kinds(library)) {
       const Batch b = batch(*kind, 13, random);
-      for (const OffsetTriangle& fit : b.fits(kernels::RowsWithTips(library, *kind, 2), 0, 13)) {
+      for (const OffsetTriangle& fit : b.fits(kernels::RowsWithTips(library, *kind), 0, 13)) {
         bits.push_back(std::bit_cast<std::uint64_t>(fit.radius));
         if (fit.radius < 0) continue;
         for (const Point3& p : fit.base) {

@@ -47,7 +47,7 @@ FlatTable flatten(const BoundTable& table, const Kind& kind, std::vector<TableCo
   const double terms = 12 * unit_roundoff + gamma_bound(count + 4);
   return {memory,
           first,
-          &table.triangle,
+          table.triangle,
           enlarged(2 * most * terms),
           enlarged((16 * most + 8 * static_cast<double>(count)) * underflow_error),
           2 * most};
@@ -62,7 +62,7 @@ FlatTable flatten(const TipTable& table, const Kind& kind, std::vector<TableColu
   if (table.first_bounded() == 0) set_linear(kind, memory);
   return {memory,
           table.first_bounded(),
-          &table.triangle(),
+          table.triangle(),
           table.error_of_largest(),
           table.error_at_least(),
           table.error_of_points()};

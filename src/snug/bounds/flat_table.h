@@ -21,7 +21,7 @@ struct TableColumn {
 struct FlatTable {
   std::span<const TableColumn> columns;
   std::size_t first;  ///< bounded: 0 or 3
-  const std::array<LayoutPoint, 3>* triangle;
+  std::array<LayoutPoint, 3> triangle;
   double error_of_largest;  ///< times the largest |c - origin| of a patch
   double error_at_least;
   double gain;  ///< what an error of all control points is multiplied by, at most

@@ -7,6 +7,7 @@
 
 #include <snug/geometry.h>
 #include <snug/mesh.h>
+#include <snug/scheme/stencils.h>
 
 #if defined(SNUG_BOUNDS_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SNUG_BOUNDS_LANES_INL_H
@@ -34,6 +35,32 @@ HWY_INLINE void store(D d, const Vec3<V>& p, const Lanes& points, std::size_t i)
   hn::Store(p.x, d, points.at(i, 0));
   hn::Store(p.y, d, points.at(i, 1));
   hn::Store(p.z, d, points.at(i, 2));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> zero3(D d) {
+  return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void add_scaled(D d, double weight, const Vec3<V>& p, Vec3<V>& sum) {
+  sum = add(sum, scaled(hn::Set(d, weight), p));
+}
+
+/// A row times points, of which source i is number name(i).
+template <class D, class Name, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> product(D d, const Stencils& rows, std::size_t r, const Lanes& control, const Name& name) {
+  const Stencils::Row row = rows.row(r);
+  const auto source = [&](std::size_t i) HWY_ATTR {
+    const double* const at = control.first + 3 * hn::Lanes(d) * name(row.sources[i]);
+    return Vec3<V>{hn::Load(d, at), hn::Load(d, at + hn::Lanes(d)), hn::Load(d, at + 2 * hn::Lanes(d))};
+  };
+  Vec3<V> sum = scaled(hn::Set(d, row.weights[0]), source(0));
+  for (std::size_t i = 1; i < row.sources.size(); ++i) add_scaled(d, row.weights[i], source(i), sum);
+  return sum;
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> product(D d, const Stencils& rows, std::size_t r, const Lanes& control) {
+  return product(d, rows, r, control, [](std::uint32_t source) { return source; });
 }
 
 /// A block of doubles for vectors, as large as it ever was on this thread.

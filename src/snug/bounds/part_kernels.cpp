@@ -27,17 +27,9 @@ constexpr double least_square = 0x1p-900;
 // What axes may lack to be orthonormal.
 constexpr double max_stretch = 0x1p-46;
 
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> zero3(D d) {
-  return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-}
 template <class V>
 HWY_INLINE V largest_of(const Vec3<V>& v) {
   return max3(hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z));
-}
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void add_scaled(D d, double weight, const Vec3<V>& p, Vec3<V>& sum) {
-  sum = add(sum, scaled(hn::Set(d, weight), p));
 }
 
 // `each(r, point)` for the products of rows [begin, end) of a matrix by columns; four rows at once.
@@ -66,16 +58,6 @@ HWY_INLINE void each_product(D d, const BoundingRows& rows, std::size_t begin, s
     for (std::size_t k = 0; k < count; ++k) add_scaled(d, rows.weight(r, k), load(d, control, k), sum);
     each(r, sum);
   }
-}
-
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> product(D d, const Stencils& rows, std::size_t r, const Lanes& control) {
-  Vec3<V> sum = zero3(d);
-  const Stencils::Row row = rows.row(r);
-  for (std::size_t i = 0; i < row.sources.size(); ++i) {
-    add_scaled(d, row.weights[i], load(d, control, row.sources[i]), sum);
-  }
-  return sum;
 }
 
 // Corners and middles of edges in the frame.
@@ -161,57 +143,59 @@ class HullV {
       upper[a] = hn::Set(d, -INFINITY);
     }
   }
-  // A Bezier point, that of a row.
-  HWY_INLINE void add(const BoundingRows& rows, std::size_t r, const QuadraticV<V>& quadratic,
-                      const Vec3<V>& p) {
-    place(p, hn::Zero(d_));
+  // A Bezier point; `weight(k)`: of point k of the quadratic in that of the raised one.
+  template <class Weight>
+  HWY_INLINE void add(const Weight& weight, const QuadraticV<V>& quadratic, const Vec3<V>& p) {
+    const Vec3<V> at = along_axes(p);
+    lower[0] = hn::Min(lower[0], at.x), upper[0] = hn::Max(upper[0], at.x);
+    lower[1] = hn::Min(lower[1], at.y), upper[1] = hn::Max(upper[1], at.y);
+    lower[2] = hn::Min(lower[2], at.z), upper[2] = hn::Max(upper[2], at.z);
     far_sq = hn::Max(far_sq, distance_sq_of(p));
     Vec3<V> rest = p;
     for (std::size_t k = 0; k < 6; ++k) {
-      rest = sub(rest, scaled(hn::Set(d_, rows.quadratic(k)[r]), quadratic.q[k]));
+      rest = sub(rest, scaled(hn::Set(d_, weight(k)), quadratic.q[k]));
     }
     most_sq = hn::Max(most_sq, dot(rest, rest));
     most_along = hn::Max(most_along, hn::Abs(dot(direction, rest)));
   }
-  // What is within a distance of a triangle; how far from the base that may be.
-  HWY_INLINE V add(const Vec3<V> (&corner)[3], V distance) {
-    V farthest_sq = hn::Zero(d_);
-    for (const Vec3<V>& p : corner) {
-      place(p, distance);
-      farthest_sq = hn::Max(farthest_sq, distance_sq_of(p));
-    }
-    return hn::Add(hn::Sqrt(hn::Add(farthest_sq, hn::Set(d_, 8 * underflow_error))), distance);
+
+  // Along an axis in the plane, across it, along the normal.
+  HWY_INLINE Vec3<V> along_axes(const Vec3<V>& p) const {
+    return {hn::Add(hn::Mul(axis_x_, p.x), hn::Mul(axis_y_, p.y)),
+            hn::Sub(hn::Mul(axis_x_, p.y), hn::Mul(axis_y_, p.x)), p.z};
+  }
+  HWY_INLINE V distance_sq_of(const Vec3<V>& p) const {
+    return distance_sq(d_, t_, foot_of(d_, t_, p.x, p.y, hn::Sub(p.z, middle_)));
   }
 
   const Vec3<V> direction;
-  V lower[3], upper[3];  // along an axis in the plane, across it, along the normal
+  V lower[3], upper[3];  // along_axes()
   V far_sq;              // from the base
   V most_sq, most_along;
 
  private:
-  HWY_INLINE V distance_sq_of(const Vec3<V>& p) const {
-    return distance_sq(d_, t_, foot_of(d_, t_, p.x, p.y, hn::Sub(p.z, middle_)));
-  }
-  HWY_INLINE void place(const Vec3<V>& p, V reach) {
-    const V at[3] = {hn::Add(hn::Mul(axis_x_, p.x), hn::Mul(axis_y_, p.y)),
-                     hn::Sub(hn::Mul(axis_x_, p.y), hn::Mul(axis_y_, p.x)), p.z};
-    for (std::size_t a = 0; a < 3; ++a) {
-      lower[a] = hn::Min(lower[a], hn::Sub(at[a], reach));
-      upper[a] = hn::Max(upper[a], hn::Add(at[a], reach));
-    }
-  }
   D d_;
   const PlanarTriangle<V>& t_;
   V axis_x_, axis_y_, middle_;
 };
 
-// The quarter at an extraordinary corner some levels down: its net, what coordinates of that are off by, the quadratic over it;
-// how far both are apart, its corners, and how far the quarter is from their triangle.
-template <class V>
+// The quarter at an extraordinary corner some levels down: its net among the new points of a step, what coordinates of that are
+// off by, the quadratic over it.
+template <class D, class V = hn::Vec<D>>
 struct TipV {
-  Lanes net;
+  HWY_INLINE Vec3<V> net(D d, std::size_t i) const { return load(d, points, control[i]); }
+  [[nodiscard]] auto name() const {
+    return [of = control](std::uint32_t source) { return of[source]; };
+  }
+  Lanes points;
+  const std::uint32_t* control;
   V error;
   QuadraticV<V> quadratic;
+};
+
+// Of a tip: how far it and its quadratic are apart, its corners, and how far it is from their triangle.
+template <class V>
+struct MeasuredTipV {
   ApartV<V> apart;
   Vec3<V> corner[3];
   V from_corners;
@@ -219,10 +203,14 @@ struct TipV {
 
 // As QuadraticRows::distance(); no coordinate is larger than `size`.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void measure(D d, const PartRows& rows, const Vec3<V>& direction, V size, TipV<V>& tip) {
+HWY_INLINE MeasuredTipV<V> measure(D d, const PartRows& rows, const Vec3<V>& direction, V size,
+                                   const TipV<D>& tip) {
   const QuadraticRows& by = *rows.quadratic;
-  Vec3<V>(&corner)[3] = tip.corner;
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = product(d, rows.kind->corner_limits(), k, tip.net);
+  MeasuredTipV<V> measured;
+  Vec3<V>(&corner)[3] = measured.corner;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corner[k] = product(d, rows.kind->corner_limits(), k, tip.points, tip.name());
+  }
   const Vec3<V> along_u = sub(corner[1], corner[0]), along_v = sub(corner[2], corner[0]);
   const auto on_layout = [&](const LayoutPoint& at) HWY_ATTR {
     return add(scaled(hn::Set(d, at[0]), along_u), scaled(hn::Set(d, at[1]), along_v));
@@ -234,7 +222,7 @@ HWY_INLINE void measure(D d, const PartRows& rows, const Vec3<V>& direction, V s
   for (std::size_t i = 0; i < by.layout().size(); ++i) {
     const LayoutPoint& at = by.layout()[i];
     const V weight = hn::Set(d, by.largest()[i]);
-    const Vec3<V> off = sub(load(d, tip.net, i), add(corner[0], on_layout(at)));
+    const Vec3<V> off = sub(tip.net(d, i), add(corner[0], on_layout(at)));
     functions = add(functions, scaled(weight, Vec3<V>{hn::Abs(off.x), hn::Abs(off.y), hn::Abs(off.z)}));
     functions_along = hn::Add(functions_along, hn::Mul(weight, hn::Abs(dot(direction, off))));
     reach += by.largest()[i] * (1 + std::fabs(at[0]) + std::fabs(at[1]));
@@ -263,26 +251,33 @@ HWY_INLINE void measure(D d, const PartRows& rows, const Vec3<V>& direction, V s
   const V underflow = hn::Set(d, 8 * underflow_error), wide = hn::Set(d, generous);
   const auto root = [&](V square) HWY_ATTR { return hn::Sqrt(hn::Add(square, underflow)); };
   const V by_functions = hn::Add(root(dot(functions, functions)), doubt);
-  tip.apart = {hn::Mul(wide, hn::Add(by_functions, root(rest_sq))),
-               hn::Mul(wide, hn::Add(hn::Add(functions_along, rest_along), doubt))};
-  tip.from_corners = hn::Mul(wide, hn::Add(by_functions, root(layout_sq)));
+  measured.apart = {hn::Mul(wide, hn::Add(by_functions, root(rest_sq))),
+                    hn::Mul(wide, hn::Add(hn::Add(functions_along, rest_along), doubt))};
+  measured.from_corners = hn::Mul(wide, hn::Add(by_functions, root(layout_sq)));
+  return measured;
 }
 
-// Replaces a tip by a level of Bezier points and a smaller tip, whose net comes to `next`.
+// Replaces a tip by a level of Bezier points and a smaller tip, of the points that come to `next`. Returns what coordinates of
+// Bezier points are off by. `beyond`: the hull has the polynomial on the side that faces the corner.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void refine(D d, const PartRows& rows, V size, const Lanes& next, HullV<D>& hull, TipV<V>& tip) {
-  const BoundingRows& level = *rows.rows;
-  each_product(d, level, 0, level.count(), tip.net, [&](std::size_t r, const Vec3<V>& p) HWY_ATTR {
-    if (r < level.bezier_count()) {
-      hull.add(level, r, tip.quadratic, p);
-    } else {
-      store(d, p, next, r - level.bezier_count());
-    }
-  });
-  tip.net = next;
+HWY_INLINE V refine(D d, const PartRows& rows, bool beyond, V size, const Lanes& next, HullV<D>& hull,
+                    TipV<D>& tip) {
+  const LevelStep& step = *rows.step;
+  const std::size_t points = step.points.row_count(), bezier = beyond ? step.inner : step.bezier.row_count();
+  for (std::size_t r = 0; r < points; ++r)
+    store(d, product(d, step.points, r, tip.points, tip.name()), next, r);
+  for (std::size_t r = 0; r < bezier; ++r) {
+    const QuadraticWeights& weights = step.quadratic[r];
+    hull.add([&](std::size_t k) { return weights[k]; }, tip.quadratic, product(d, step.bezier, r, next));
+  }
+  const auto passed_on = [&](const Stencils& by, V error) HWY_ATTR {
+    return hn::Mul(hn::Set(d, generous), hn::Add(hn::Mul(hn::Set(d, by.result_error(0, 1)), error),
+                                                 hn::Mul(hn::Set(d, by.result_error(1, 0)), size)));
+  };
+  tip.points = next;
   tip.quadratic = restricted(d, tip.quadratic, rows.quadratic->to_level_nets()[0]);
-  tip.error = hn::Mul(hn::Set(d, generous), hn::Add(hn::Mul(hn::Set(d, level.result_error(0, 1)), tip.error),
-                                                    hn::Mul(hn::Set(d, level.result_error(1, 0)), size)));
+  tip.error = passed_on(step.points, tip.error);
+  return passed_on(step.bezier, tip.error);
 }
 
 void ShapeParts(const PartRows& rows, std::span<const Patch* const> parts, PartShape* const* out) {
@@ -425,98 +420,203 @@ HWY_INLINE PlanarTriangle<V> triangle_of(D d, std::span<const PlacedPart> parts)
   return t;
 }
 
-// Names of errors are those of derivations/quadratics.md, "Many patches at once".
+// The parts of one vector.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void bound_lanes(D d, const PartRows& kind, std::span<const PlacedPart> parts, unsigned levels,
-                            double* memory, PartBounds* const* out) {
-  const BoundingRows& rows = *kind.rows;
-  const std::size_t lanes = hn::Lanes(d), count = rows.control_count(), here = parts.size();
-  const V zero = hn::Zero(d);
-  const PlanarTriangle<V> t = triangle_of(d, parts);
-  const auto number = [&](double PatchFrame::*field) HWY_ATTR {
-    return lanes_of(d, here, [&](std::size_t l) { return parts[l].frame->*field; });
-  };
-  TipV<V> part;
-  part.apart = {zero, zero};
-  part.net = Lanes{memory, lanes};
-  const Lanes nets[2] = {{memory + 3 * lanes * count, lanes}, part.net};
-  for (std::size_t k = 0; k < 6; ++k) {
-    part.quadratic.q[k] = lanes3_of(d, here, [&](std::size_t l) -> const Vector3& {
-      // Corner k of the kind is corner k + first of the part.
-      return parts[l].frame->quadratic[parts[l].child][k < 3 ? (k + parts[l].patch->first) % 3
-                                                             : 3 + (k + parts[l].patch->first) % 3];
+class BoundLanes {
+ public:
+  // `memory`: memory_for() doubles a lane.
+  HWY_INLINE BoundLanes(D d, const PartRows& kind, std::span<const PlacedPart> parts, double* memory,
+                        PartBounds* const* out)
+      : d_(d),
+        kind_(kind),
+        parts_(parts),
+        out_(out),
+        t_(triangle_of(d, parts)),
+        hull_(d, t_, number(&PatchFrame::axis_x), number(&PatchFrame::axis_y), number(&PatchFrame::middle),
+              lanes3_of(d, parts.size(),
+                        [&](std::size_t l) -> const Vector3& { return parts[l].frame->direction; })),
+        points_{{memory, hn::Lanes(d)}, {memory + 3 * hn::Lanes(d) * count_in(kind), hn::Lanes(d)}} {}
+
+  // Points beside control points, twice.
+  [[nodiscard]] static std::size_t memory_for(const PartRows& kind) { return 6 * count_in(kind); }
+
+  HWY_INLINE void bound_polynomial() {
+    const BoundingRows& rows = *kind_.rows;
+    const double sum = std::max(1.0, rows.abs_sum());
+    begin(sum, sum, rows.entry_error(), [](std::size_t i) { return i; });
+    const QuadraticV<V> quadratic = quadratic_over_part();
+    each_product(d_, rows, 0, rows.bezier_count(), points_[0], [&](std::size_t r, const Vec3<V>& p) HWY_ATTR {
+      hull_.add([&](std::size_t k) { return rows.quadratic(k)[r]; }, quadratic, p);
     });
+    put_out(false);
   }
-  gather(
-      here, [&](std::size_t l) -> const Patch& { return *parts[l].patch; }, part.net);
-  V largest = zero, probe = zero;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec3<V> r = sub(load(d, part.net, k), t.a);
-    largest = hn::Max(largest, largest_of(r));
-    probe = hn::Add(probe, hn::Add(hn::Sub(r.x, r.x), hn::Add(hn::Sub(r.y, r.y), hn::Sub(r.z, r.z))));
-    store(d, Vec3<V>{dot(t.t1, r), dot(t.t2, r), dot(t.n, r)}, part.net, k);
-  }
-  largest = hn::Add(largest, probe);
 
-  const double sum = std::max(1.0, rows.abs_sum());
-  double growth = sum;
-  if (kind.tip()) {
-    growth = std::max(1.0, kind.kind->corner_limits().max_abs_sum());
-    for (unsigned i = 0; i < levels; ++i) growth *= sum;
+  HWY_INLINE void bound_tip(const TipLevels& levels) {
+    const LevelStep& step = *kind_.step;
+    const std::vector<std::uint32_t>& control = step.nets[0].control;
+    TipV<D> tip{points_[0], control.data(), hn::Zero(d_), {}};
+    if (levels.first == 0) {
+      double growth = std::max({1.0, kind_.kind->corner_limits().max_abs_sum(), step.bezier.max_abs_sum()});
+      for (unsigned i = 0; i < deepest_part_tip; ++i) growth *= std::max(1.0, step.points.max_abs_sum());
+      begin(1, growth, 0, [&](std::size_t i) { return control[i]; });
+      tip.quadratic = quadratic_over_part();
+      tip.error = error_;
+    } else {
+      go_on(tip);
+    }
+    for (unsigned level = levels.first; level < levels.last; ++level) {
+      error_ = hn::Max(
+          error_, refine(d_, kind_, level > 0, size_, points_[1 - (level - levels.first) % 2], hull_, tip));
+    }
+    put_out(levels.first > 0);
+    const MeasuredTipV<V> measured = measure(d_, kind_, hull_.direction, size_, tip);
+    put_out_tip(measured);
+    for (std::size_t i = 0; i < control.size(); ++i) {
+      hand_out(d_, parts_.size(), tip.net(d_, i),
+               [&](std::size_t l) -> Vector3& { return parts_[l].tip->net[i]; });
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      hand_out(d_, parts_.size(), tip.quadratic.q[k],
+               [&](std::size_t l) -> Vector3& { return parts_[l].tip->quadratic[k]; });
+    }
+    hand_out(d_, parts_.size(), tip.error, [&](std::size_t l) -> double& { return parts_[l].tip->error; });
   }
-  const double of_largest = enlarged(3 * (gamma_bound(count + 16) * sum + rows.entry_error()));
-  const V given = lanes_of(d, here, [&](std::size_t l) { return parts[l].patch->error; });
-  V error = hn::Add(hn::Mul(hn::Set(d, of_largest), largest), hn::Mul(hn::Set(d, 2 * generous * sum), given));
-  // Not a number where a point is not finite, whatever a maximum makes of that.
-  const V size = hn::Add(
-      hn::Max(number(&PatchFrame::quadratic_size), hn::Mul(hn::Set(d, 2 * generous * growth), largest)),
-      hn::Sub(largest, largest));
 
-  HullV<D> hull(
-      d, t, number(&PatchFrame::axis_x), number(&PatchFrame::axis_y), number(&PatchFrame::middle),
-      lanes3_of(d, here, [&](std::size_t l) -> const Vector3& { return parts[l].frame->direction; }));
-  part.error = error;
-  V tip_base = zero;
-  if (kind.tip()) {
-    for (unsigned level = 0; level < levels; ++level) refine(d, kind, size, nets[level % 2], hull, part);
-    measure(d, kind, hull.direction, size, part);
-    tip_base = hull.add(part.corner, part.from_corners);
-  } else {
-    each_product(d, rows, 0, rows.bezier_count(), part.net,
-                 [&](std::size_t r, const Vec3<V>& p) HWY_ATTR { hull.add(rows, r, part.quadratic, p); });
+ private:
+  [[nodiscard]] static std::size_t count_in(const PartRows& kind) {
+    return std::max(kind.kind->control_count(), kind.tip() ? kind.step->points.row_count() : 0);
   }
-  error = hn::Max(error, part.error);
-  const V of_points = hn::Add(hn::Add(hn::Mul(hn::Set(d, spatial_error(1)), error),
-                                      hn::Mul(hn::Set(d, 2 * gamma_bound(quadratic_roundings)), size)),
-                              hn::Set(d, tiny));
-  const auto root = [&](V square)
-                        HWY_ATTR { return hn::Sqrt(hn::Add(square, hn::Set(d, 8 * underflow_error))); };
-  const V any = hn::Add(root(hull.most_sq), of_points);
-  const V along = hn::Add(hn::Add(hull.most_along, of_points), hn::Mul(hn::Set(d, 16 * unit_roundoff), any));
-  for (std::size_t a = 0; a < 3; ++a) {
-    hand_out(d, here, hull.lower[a], [&](std::size_t l) -> double& { return out[l]->lower[a]; });
-    hand_out(d, here, hull.upper[a], [&](std::size_t l) -> double& { return out[l]->upper[a]; });
+  HWY_INLINE V number(double PatchFrame::*field) const {
+    return lanes_of(d_, parts_.size(), [&](std::size_t l) { return parts_[l].frame->*field; });
   }
-  const std::pair<PartBounds::Distances PartBounds::*, std::array<V, 3>> distances[] = {
-      {&PartBounds::points, {root(hull.far_sq), any, along}},
-      {&PartBounds::tip, {tip_base, part.apart.any, part.apart.along}}};
-  for (const auto& [of, v] : distances) {
-    hand_out(d, here, v[0], [&, of = of](std::size_t l) -> double& { return (out[l]->*of).base; });
-    hand_out(d, here, v[1], [&, of = of](std::size_t l) -> double& { return (out[l]->*of).quadratic; });
-    hand_out(d, here, v[2], [&, of = of](std::size_t l) -> double& { return (out[l]->*of).along; });
+  HWY_INLINE QuadraticV<V> quadratic_over_part() const {
+    QuadraticV<V> quadratic;
+    for (std::size_t k = 0; k < 6; ++k) {
+      quadratic.q[k] = lanes3_of(d_, parts_.size(), [&](std::size_t l) -> const Vector3& {
+        // Corner k of the kind is corner k + first of the part.
+        return parts_[l].frame->quadratic[parts_[l].child][k < 3 ? (k + parts_[l].patch->first) % 3
+                                                                 : 3 + (k + parts_[l].patch->first) % 3];
+      });
+    }
+    return quadratic;
   }
-  hand_out(d, here, error, [&](std::size_t l) -> double& { return out[l]->error; });
-  hand_out(d, here, size, [&](std::size_t l) -> double& { return out[l]->size; });
-}
 
-SNUG_FLAT void BoundParts(const PartRows& kind, std::span<const PlacedPart> parts, unsigned levels,
+  // Control points in the frame, at the places `to`, before rows with these sums and errors, whose products, and theirs, are `growth`
+  // times as large at most. Names of errors are those of derivations/quadratics.md, "Many patches at once".
+  template <class To>
+  HWY_INLINE void begin(double sum, double growth, double entry_error, const To& to) {
+    const std::size_t count = kind_.kind->control_count();
+    gather(
+        parts_.size(), [&](std::size_t l) -> const Patch& { return *parts_[l].patch; }, points_[1]);
+    V largest = hn::Zero(d_), probe = largest;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3<V> r = sub(load(d_, points_[1], k), t_.a);
+      largest = hn::Max(largest, largest_of(r));
+      probe = hn::Add(probe, hn::Add(hn::Sub(r.x, r.x), hn::Add(hn::Sub(r.y, r.y), hn::Sub(r.z, r.z))));
+      store(d_, Vec3<V>{dot(t_.t1, r), dot(t_.t2, r), dot(t_.n, r)}, points_[0], to(k));
+    }
+    largest = hn::Add(largest, probe);
+    const double of_largest = enlarged(3 * (gamma_bound(count + 16) * sum + entry_error));
+    const V given = lanes_of(d_, parts_.size(), [&](std::size_t l) { return parts_[l].patch->error; });
+    error_ =
+        hn::Add(hn::Mul(hn::Set(d_, of_largest), largest), hn::Mul(hn::Set(d_, 2 * generous * sum), given));
+    // Not a number where a point is not finite, whatever a maximum makes of that.
+    size_ = hn::Add(
+        hn::Max(number(&PatchFrame::quadratic_size), hn::Mul(hn::Set(d_, 2 * generous * growth), largest)),
+        hn::Sub(largest, largest));
+  }
+
+  // Where a call before ended.
+  HWY_INLINE void go_on(TipV<D>& tip) {
+    const std::size_t here = parts_.size();
+    for (std::size_t i = 0; i < kind_.kind->control_count(); ++i) {
+      const Vec3<V> p =
+          lanes3_of(d_, here, [&](std::size_t l) -> const Vector3& { return parts_[l].tip->net[i]; });
+      store(d_, p, tip.points, tip.control[i]);
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      tip.quadratic.q[k] =
+          lanes3_of(d_, here, [&](std::size_t l) -> const Vector3& { return parts_[l].tip->quadratic[k]; });
+    }
+    tip.error = lanes_of(d_, here, [&](std::size_t l) { return parts_[l].tip->error; });
+    error_ = lanes_of(d_, here, [&](std::size_t l) { return out_[l]->error; });
+    size_ = lanes_of(d_, here, [&](std::size_t l) { return out_[l]->size; });
+  }
+
+  HWY_INLINE V root(V square) const { return hn::Sqrt(hn::Add(square, hn::Set(d_, 8 * underflow_error))); }
+  // `more`: beside what is there.
+  HWY_INLINE void put_out(bool more) {
+    const V of_points = hn::Add(hn::Add(hn::Mul(hn::Set(d_, spatial_error(1)), error_),
+                                        hn::Mul(hn::Set(d_, 2 * gamma_bound(quadratic_roundings)), size_)),
+                                hn::Set(d_, tiny));
+    const V any = hn::Add(root(hull_.most_sq), of_points);
+    const V along =
+        hn::Add(hn::Add(hull_.most_along, of_points), hn::Mul(hn::Set(d_, 16 * unit_roundoff), any));
+    put_out(&PartBounds::points, more, hull_.lower, hull_.upper, {root(hull_.far_sq), any, along});
+    hand_out(d_, parts_.size(), error_, [&](std::size_t l) -> double& { return out_[l]->error; });
+    hand_out(d_, parts_.size(), size_, [&](std::size_t l) -> double& { return out_[l]->size; });
+  }
+  HWY_INLINE void put_out_tip(const MeasuredTipV<V>& tip) {
+    V farthest_sq = hn::Zero(d_), lower[3], upper[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3<V> at = hull_.along_axes(tip.corner[k]);
+      const V height[3] = {at.x, at.y, at.z};
+      for (std::size_t a = 0; a < 3; ++a) {
+        lower[a] = k == 0 ? height[a] : hn::Min(lower[a], height[a]);
+        upper[a] = k == 0 ? height[a] : hn::Max(upper[a], height[a]);
+      }
+      farthest_sq = hn::Max(farthest_sq, hull_.distance_sq_of(tip.corner[k]));
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      lower[a] = hn::Sub(lower[a], tip.from_corners);
+      upper[a] = hn::Add(upper[a], tip.from_corners);
+    }
+    put_out(&PartBounds::tip, false, lower, upper,
+            {hn::Add(root(farthest_sq), tip.from_corners), tip.apart.any, tip.apart.along});
+  }
+  HWY_INLINE void put_out(PartBounds::Reach PartBounds::*which, bool more, const V (&lower)[3],
+                          const V (&upper)[3], const std::array<V, 3>& distances) {
+    HWY_ALIGN double lane[9 * HWY_MAX_BYTES / sizeof(double)];
+    const std::size_t lanes = hn::Lanes(d_);
+    for (std::size_t a = 0; a < 3; ++a) {
+      hn::Store(lower[a], d_, lane + a * lanes);
+      hn::Store(upper[a], d_, lane + (3 + a) * lanes);
+      hn::Store(distances[a], d_, lane + (6 + a) * lanes);
+    }
+    for (std::size_t l = 0; l < parts_.size(); ++l) {
+      const auto at = [&](std::size_t i) { return lane[i * lanes + l]; };
+      const PartBounds::Reach reach{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8)};
+      if (more) {
+        (out_[l]->*which).add(reach);
+      } else {
+        out_[l]->*which = reach;
+      }
+    }
+  }
+
+  const D d_;
+  const PartRows& kind_;
+  std::span<const PlacedPart> parts_;
+  PartBounds* const* out_;
+  const PlanarTriangle<V> t_;
+  HullV<D> hull_;
+  const Lanes points_[2];
+  V error_, size_;
+};
+
+SNUG_FLAT void BoundParts(const PartRows& kind, std::span<const PlacedPart> parts, const TipLevels& levels,
                           PartBounds* const* out) {
   const hn::ScalableTag<double> d;
+  using Bounds = BoundLanes<std::remove_const_t<decltype(d)>>;
   const std::size_t lanes = hn::Lanes(d);
-  double* const memory = aligned_memory(6 * lanes * kind.kind->control_count());
+  double* const memory = aligned_memory(lanes * Bounds::memory_for(kind));
   for (std::size_t begin = 0; begin < parts.size(); begin += lanes) {
-    const std::size_t here = std::min(lanes, parts.size() - begin);
-    bound_lanes(d, kind, parts.subspan(begin, here), levels, memory, out + begin);
+    Bounds bounds(d, kind, parts.subspan(begin, std::min(lanes, parts.size() - begin)), memory, out + begin);
+    if (kind.tip()) {
+      bounds.bound_tip(levels);
+    } else {
+      bounds.bound_polynomial();
+    }
   }
 }
 
@@ -533,12 +633,22 @@ std::optional<PartRows> PartRows::of(BoundsCache& library, const Kind& kind, boo
   }
   const QuadraticRows& quadratic = library.quadratic_rows(kind);
   if (kind.polynomial()) {
-    return PartRows{&kind, unsplit ? &library.rows(kind) : library.direct_rows(kind), &quadratic};
+    return PartRows{&kind, unsplit ? &library.rows(kind) : library.direct_rows(kind), nullptr, &quadratic};
   }
-  const BoundingRows& rows = library.level_rows(kind);
-  const bool lasts = rows.nets().size() == 1 && rows.nets()[0].kind == &kind;
+  const LevelStep& step = library.level_step(kind);
+  const bool lasts = step.nets.size() == 1 && step.nets[0].kind == &kind && step.goes_to(step.nets[0].own);
   if (quadratic.layout().empty() || !lasts) return {};
-  return PartRows{&kind, &rows, &quadratic};
+  return PartRows{&kind, nullptr, &step, &quadratic};
+}
+
+void PartBounds::Reach::add(const Reach& other) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    lower[a] = std::min(lower[a], other.lower[a]);
+    upper[a] = std::max(upper[a], other.upper[a]);
+  }
+  base = std::max(base, other.base);
+  quadratic = std::max(quadratic, other.quadratic);
+  along = std::max(along, other.along);
 }
 
 namespace kernels {
@@ -553,8 +663,11 @@ void shape_parts(const PartRows& rows, std::span<const Patch* const> parts, std:
 void make_frames(std::span<const PartShape> parts, std::size_t parts_of_each, std::span<PatchFrame> out) {
   HWY_DYNAMIC_DISPATCH(MakeFrames)(parts, parts_of_each, out);
 }
-void bound_parts(const PartRows& rows, std::span<const PlacedPart> parts, unsigned levels,
+void bound_parts(const PartRows& rows, std::span<const PlacedPart> parts, TipLevels levels,
                  std::span<PartBounds* const> out) {
+  if (rows.tip()) {
+    for (const PlacedPart& part : parts) part.tip->net.resize(rows.kind->control_count());
+  }
   HWY_DYNAMIC_DISPATCH(BoundParts)(rows, parts, levels, out.data());
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <snug/bounds/bounds_cache.h>
 #include <snug/patch/patch.h>
@@ -16,7 +18,8 @@ namespace snug {
 /// comes again at every level.
 struct PartRows {
   const Kind* kind;
-  const BoundingRows* rows;  ///< of a tip those of one level, of other parts of a patch those without a split
+  const BoundingRows* rows;  ///< without a split; none of a tip
+  const LevelStep* step;     ///< of a tip
   const QuadraticRows* quadratic;
 
   /// None of planes, and of kinds that are neither. `unsplit`: the part is the patch itself.
@@ -46,22 +49,26 @@ struct PatchFrame {
   bool good;                                        ///< no needle, and finite
 };
 
-/// Bounds of a part in its patch's frame: of its points, heights along the longest edge, across it and along the normal apart, and
-/// what is left of it at an extraordinary corner.
+/// Bounds of a part in its patch's frame: of its points, and apart from them of what is left of it at an extraordinary corner.
 struct PartBounds {
-  std::array<double, 3> lower, upper;
-  /// The largest distance from the base, that from the quadratic, parameter by parameter, and that along its direction.
-  struct Distances {
+  struct Reach {
+    /// Heights along the longest edge, across it and along the normal.
+    std::array<double, 3> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+    /// The largest distance from the base, that from the quadratic, parameter by parameter, and that along its direction.
     double base = 0, quadratic = 0, along = 0;
-    void add(const Distances& other) {
-      base = std::max(base, other.base);
-      quadratic = std::max(quadratic, other.quadratic);
-      along = std::max(along, other.along);
-    }
+    void add(const Reach& other);
   };
-  Distances points, tip;
+  Reach points, tip;
   double error, size;  ///< what coordinates of points are off by, and what none of them exceeds
 };
+
+/// Where a tip ended, in its patch's frame: its net, the quadratic over it, and what coordinates of the net are off by.
+struct TipState {
+  std::vector<Vector3> net;
+  std::array<Vector3, 6> quadratic;
+  double error;
+};
+inline constexpr unsigned deepest_part_tip = 12;
 
 /// Patches in vectors, a part or a patch a lane. Answers do not depend on what is in other lanes.
 namespace kernels {
@@ -76,10 +83,15 @@ struct PlacedPart {
   const Patch* patch;
   const PatchFrame* frame;
   std::uint8_t child;
+  TipState* tip;
 };
-/// Tips go `levels` down, at least one.
+/// Tips go from a level to another; unless the first is 0, where a call ended that began with them, `out` what it said.
+/// Requires:  0 <= first < last <= deepest_part_tip.
 /// Source:    derivations/quadratics.md, "Many patches at once".
-void bound_parts(const PartRows& rows, std::span<const PlacedPart> parts, unsigned levels,
+struct TipLevels {
+  unsigned first, last;
+};
+void bound_parts(const PartRows& rows, std::span<const PlacedPart> parts, TipLevels levels,
                  std::span<PartBounds* const> out);
 
 }  // namespace kernels

@@ -12,7 +12,7 @@ namespace snug {
 namespace {
 
 // How deep tips are, in turn, and how much they may add to what the rest needs.
-constexpr unsigned levels_of_tips[] = {3, 6, 12};
+constexpr unsigned levels_of_tips[] = {3, 4, 6, deepest_part_tip};
 constexpr double max_excess = 0.1;
 // Covers the roundings of some dozen operations here.
 constexpr double generous = 1 + 0x1p-40;
@@ -50,25 +50,29 @@ class Group {
   std::vector<PartShape> shapes_;
   std::vector<PatchFrame> frames_;
   std::vector<PartBounds> bounds_;
+  std::vector<TipState> tips_;  // as many as there ever were
 };
 
 void Group::split_all() {
   if (parts_of_each_ == 1) return;
   if (parts_.size() < 4 * patches_.size()) parts_.resize(4 * patches_.size());
   for (std::size_t i = 0; i < patches_.size(); ++i) {
-    for (unsigned child = 0; child < 4; ++child) split(*patches_[i], child, parts_[4 * i + child]);
+    split_into_four(*patches_[i], std::span<Patch, 4>(parts_.data() + 4 * i, 4));
   }
 }
 
 void Group::keep_what_sticks_out() {
   const auto fine = [&](std::uint32_t i) {
     const std::size_t first = i - i % parts_of_each_;
-    PartBounds::Distances rest;
-    for (std::size_t k = 0; k < parts_of_each_; ++k) rest.add(bounds_[first + k].points);
-    const PartBounds::Distances& tip = bounds_[i].tip;
+    double base = 0, quadratic = 0;
+    for (std::size_t k = 0; k < parts_of_each_; ++k) {
+      base = std::max(base, bounds_[first + k].points.base);
+      quadratic = std::max(quadratic, bounds_[first + k].points.quadratic);
+    }
+    const PartBounds::Reach& tip = bounds_[i].tip;
     const double little = 0x1p-32 * bounds_[i].size;
-    return tip.quadratic <= (1 + max_excess) * rest.quadratic + little &&
-           tip.base <= (1 + max_excess) * rest.base + little;
+    return tip.quadratic <= (1 + max_excess) * quadratic + little &&
+           tip.base <= (1 + max_excess) * base + little;
   };
   order_.erase(std::remove_if(order_.begin(), order_.end(), fine), order_.end());
 }
@@ -95,10 +99,6 @@ PieceFit answer(const Patch& patch, const PatchFrame& frame, const PartShape* co
   PartBounds all = parts[0];
   all.points.add(all.tip);
   for (const PartBounds& part : parts.subspan(1)) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      all.lower[a] = std::min(all.lower[a], part.lower[a]);
-      all.upper[a] = std::max(all.upper[a], part.upper[a]);
-    }
     all.points.add(part.points);
     all.points.add(part.tip);
     all.error = std::max(all.error, part.error);
@@ -145,8 +145,8 @@ PieceFit answer(const Patch& patch, const PatchFrame& frame, const PartShape* co
       generous * (given + turned + 32 * unit_roundoff * (all.size + max_abs(origin) + max_abs(frame.a)));
   for (std::size_t a = 0; a < 3; ++a) {
     const double height = dot(fit.axes[a], origin) + dot(fit.axes[a], frame.a);
-    fit.lower[a] = height + all.lower[a] - doubt;
-    fit.upper[a] = height + all.upper[a] + doubt;
+    fit.lower[a] = height + all.points.lower[a] - doubt;
+    fit.upper[a] = height + all.points.upper[a] + doubt;
   }
   // Not a number is not less.
   if (radius < INFINITY && fit.quadratic.error < INFINITY) fit.offset.radius = radius;
@@ -166,12 +166,16 @@ void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
   shapes_.resize(parts);
   frames_.resize(patches_.size());
   bounds_.resize(parts);
+  if (tips_.size() < parts) tips_.resize(parts);
   // Kept from call to call: a warm frame takes no memory.
   thread_local std::vector<const Patch*> of_kind;
   thread_local std::vector<PartShape*> shapes;
   thread_local std::vector<kernels::PlacedPart> placed;
   thread_local std::vector<PartBounds*> bounds;
-  for (PartBounds& part_bounds : bounds_) part_bounds.error = -1;
+  for (PartBounds& part_bounds : bounds_) {
+    part_bounds.tip = {};
+    part_bounds.error = -1;
+  }
   for_each_kind(library, [&](const PartRows& rows, std::span<const std::uint32_t> which) {
     of_kind.clear();
     shapes.clear();
@@ -182,18 +186,20 @@ void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
     kernels::shape_parts(rows, of_kind, shapes);
   });
   kernels::make_frames(shapes_, parts_of_each_, frames_);
+  unsigned done = 0;
   for (const unsigned levels : levels_of_tips) {
     for_each_kind(library, [&](const PartRows& rows, std::span<const std::uint32_t> which) {
       placed.clear();
       bounds.clear();
       for (const std::uint32_t i : which) {
-        placed.push_back(
-            {&part(i), &frames_[i / parts_of_each_], static_cast<std::uint8_t>(i % parts_of_each_)});
+        placed.push_back({&part(i), &frames_[i / parts_of_each_],
+                          static_cast<std::uint8_t>(i % parts_of_each_), &tips_[i]});
         bounds.push_back(&bounds_[i]);
       }
-      kernels::bound_parts(rows, placed, levels, bounds);
+      kernels::bound_parts(rows, placed, {done, levels}, bounds);
     });
     keep_what_sticks_out();
+    done = levels;
   }
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     const std::size_t first = i * parts_of_each_;

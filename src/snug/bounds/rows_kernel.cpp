@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include <snug/bounds/rows_kernel.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
@@ -21,40 +23,31 @@ namespace {
 // How much tips may add to the radius of the rest, and to its height.
 constexpr double max_excess = 0.03;
 
-// Two rows at once: control points are loaded once for both.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void apply_two(D d, const double* one, const double* two, const Lanes& control, std::size_t count,
-                          Vec3<V>& first, Vec3<V>& second) {
-  const V zero = hn::Zero(d);
-  first = second = {zero, zero, zero};
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec3<V> c = load(d, control, k);
-    first = add(first, scaled(hn::Set(d, one[k]), c));
-    second = add(second, scaled(hn::Set(d, two[k]), c));
-  }
-}
-
-template <class V>
-struct Extent {
-  V lower, upper;
-};
-
 // Boxes of a tip in the frame, [axis][corner of the table], with all errors.
 template <class V>
 struct TipBoxes {
   V middle[3][3], half[3][3];
 };
 
+// A control net among the points of a step.
+struct NetLanes {
+  Lanes points;
+  std::span<const std::uint32_t> control;
+  [[nodiscard]] const double* at(std::size_t i, std::size_t axis) const {
+    return points.at(control[i], axis);
+  }
+};
+
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE TipBoxes<V> boxes_of(D d, const RowsWithTips::Tip& tip, const Lanes& net, V net_error) {
-  const FlatTable& table = tip.table;
+HWY_INLINE TipBoxes<V> boxes_of(D d, const FlatTable& table, const NetLanes& net, V net_error) {
+  const std::size_t count = net.control.size();
   LinearV<V> linear[3];
   begin_linear(d, table, net, linear);
-  if (table.first == 0) add_to_linear(d, table, net, 0, tip.count, linear);
+  if (table.first == 0) add_to_linear(d, table, net, 0, count, linear);
   TipBoxes<V> boxes;
   V largest;
   begin_boxes(d, table, linear, boxes.middle, boxes.half, largest);
-  add_to_boxes(d, table, net, 0, tip.count, linear, boxes.middle, boxes.half, largest);
+  add_to_boxes(d, table, net, 0, count, linear, boxes.middle, boxes.half, largest);
   const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, table.error_of_largest), largest),
                                   hn::Mul(hn::Set(d, table.gain), net_error)),
                           hn::Set(d, table.error_at_least));
@@ -99,37 +92,68 @@ HWY_INLINE V into_frame(D d, const PlanarTriangle<V>& t, const Lanes& control, s
   return hn::Add(largest, probe);
 }
 
+// Points of patches as they come to be, level by level.
+struct Memory {
+  Lanes control, patch, tip[2], bezier;
+  Memory(double* at, std::size_t lanes, const RowsWithTips& rows) {
+    for (Lanes* const part : {&control, &patch, &tip[0], &tip[1], &bezier}) {
+      *part = {at, lanes};
+      at += 3 * lanes * (part == &control ? rows.kind().control_count() : rows.most_points());
+    }
+  }
+  [[nodiscard]] static std::size_t size(const RowsWithTips& rows, unsigned levels) {
+    return 3 * (rows.kind().control_count() + 3 * rows.most_points() + rows.bezier_count(levels));
+  }
+};
+
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, const Lanes& control, const Lanes& points,
+HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, unsigned levels, const Memory& memory,
                           std::span<OffsetTriangle> out) {
-  const std::size_t count = rows.control_count();
+  const Lanes& control = memory.control;
+  const std::size_t count = rows.kind().control_count();
   const V zero = hn::Zero(d), infinite = hn::Set(d, INFINITY);
   const Vec3<V> origin = load(d, control, 0);
   for (std::size_t k = 0; k < count; ++k) store(d, sub(load(d, control, k), origin), control, k);
-  Vec3<V> corner[4];
-  apply_two(d, rows.row(0), rows.row(1), control, count, corner[0], corner[1]);
-  apply_two(d, rows.row(2), rows.row(2), control, count, corner[2], corner[3]);
+  Vec3<V> corner[3];
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = product(d, rows.kind().corner_limits(), k, control);
   const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
   const V largest = into_frame(d, t, control, count);
   const V point_error = hn::Mul(hn::Set(d, rows.error_of_largest()), largest);
 
-  const std::size_t end = rows.count(), tips_begin = rows.tips_begin();
+  std::size_t bezier = 0;
   V lower = infinite, upper = hn::Sub(zero, infinite);
-  for (std::size_t r = 3; r < end; r += 2) {
-    Vec3<V> p[2];
-    apply_two(d, rows.row(r), rows.row(std::min(r + 1, end - 1)), control, count, p[0], p[1]);
-    for (std::size_t i = 0; i < 2 && r + i < end; ++i) {
-      store(d, p[i], points, r + i);
-      if (r + i >= tips_begin) continue;
-      lower = hn::Min(lower, p[i].z);
-      upper = hn::Max(upper, p[i].z);
+  const auto add_level = [&](const LevelStep& step, std::size_t bezier_rows, const Lanes& points) HWY_ATTR {
+    for (std::size_t r = 0; r < bezier_rows; ++r, ++bezier) {
+      const Vec3<V> p = product(d, step.bezier, r, points);
+      store(d, p, memory.bezier, bezier);
+      lower = hn::Min(lower, p.z);
+      upper = hn::Max(upper, p.z);
     }
+  };
+  const LevelStep& first = rows.first_step();
+  for (std::size_t r = 0; r < first.points.row_count(); ++r) {
+    store(d, product(d, first.points, r, control), memory.patch, r);
   }
-  TipBoxes<V> boxes[3];
-  const V low = lower, high = upper;
+  add_level(first, first.bezier.row_count(), memory.patch);
+  TipBoxes<V> boxes[RowsWithTips::most_tips];
   for (std::size_t i = 0; i < rows.tips().size(); ++i) {
     const RowsWithTips::Tip& tip = rows.tips()[i];
-    boxes[i] = boxes_of(d, tip, Lanes{points.at(tip.begin, 0), points.lanes}, point_error);
+    NetLanes net{memory.patch, tip.control};
+    for (unsigned level = 1; level < levels; ++level) {
+      const LevelStep& step = *tip.steps[level];
+      const Lanes& next = memory.tip[level % 2];
+      const auto name = [&](std::uint32_t source) { return net.control[source]; };
+      for (std::size_t r = 0; r < step.points.row_count(); ++r) {
+        store(d, product(d, step.points, r, net.points, name), next, r);
+      }
+      // The piece beyond is the middle one of the step before.
+      add_level(step, step.inner, next);
+      net = {next, step.nets[0].control};
+    }
+    boxes[i] = boxes_of(d, tip.table, net, point_error);
+  }
+  const V low = lower, high = upper;
+  for (std::size_t i = 0; i < rows.tips().size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       lower = hn::Min(lower, hn::Sub(boxes[i].middle[2][k], boxes[i].half[2][k]));
       upper = hn::Max(upper, hn::Add(boxes[i].middle[2][k], boxes[i].half[2][k]));
@@ -139,8 +163,8 @@ HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, const Lanes& control, c
   const V middle = hn::Mul(hn::Set(d, 0.5), hn::Add(hn::Add(lower, upper), zero));
 
   V rest = zero, tips = zero;
-  for (std::size_t r = 3; r < tips_begin; ++r) {
-    const Vec3<V> p = load(d, points, r);
+  for (std::size_t r = 0; r < bezier; ++r) {
+    const Vec3<V> p = load(d, memory.bezier, r);
     rest = hn::Max(rest, distance_sq(d, t, foot_of(d, t, p.x, p.y, hn::Sub(p.z, middle))));
   }
   for (std::size_t i = 0; i < rows.tips().size(); ++i) {
@@ -167,16 +191,15 @@ HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, const Lanes& control, c
   hand_out(d, corner, hn::IfThenElse(good, widened, hn::Set(d, -1.0)), hn::Add(reach.rounding, given), out);
 }
 
-void FitRows(const RowsWithTips& rows, std::span<const Point3> points, const VertexId* control,
-             std::span<OffsetTriangle> out) {
+void FitRows(const RowsWithTips& rows, unsigned levels, std::span<const Point3> points,
+             const VertexId* control, std::span<OffsetTriangle> out) {
   const hn::ScalableTag<double> d;
-  const std::size_t lanes = hn::Lanes(d), count = rows.control_count();
-  double* const aligned = aligned_memory(3 * lanes * (count + rows.count()));
-  const Lanes gathered{aligned, lanes}, results{aligned + 3 * lanes * count, lanes};
+  const std::size_t lanes = hn::Lanes(d), count = rows.kind().control_count();
+  const Memory memory(aligned_memory(lanes * Memory::size(rows, levels)), lanes, rows);
   for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
     const std::size_t here = std::min(lanes, out.size() - begin);
-    gather_lanes(points, control + count * begin, count, 0, count, here, lanes, aligned);
-    fit_lanes(d, rows, gathered, results, out.subspan(begin, here));
+    gather_lanes(points, control + count * begin, count, 0, count, here, lanes, memory.control.first);
+    fit_lanes(d, rows, levels, memory, out.subspan(begin, here));
   }
 }
 
@@ -189,38 +212,76 @@ namespace snug::kernels {
 
 HWY_EXPORT(FitRows);
 
-bool RowsWithTips::fit(const Kind& kind) {
-  return kind.cacheable() && !kind.polynomial() && has_self_similar_tips(kind);
+namespace {
+
+// each(level, kind, step) from a net at a corner on, as long as there is one net alone, at that corner.
+template <class Each>
+bool follow(BoundsCache& library, const LevelStep::Net& net, const Each& each) {
+  const Kind* kind = net.kind;
+  std::size_t corner = net.own;
+  for (unsigned level = 1; level < RowsWithTips::most_levels; ++level) {
+    const LevelStep& step = library.level_step(*kind);
+    if (!step.goes_to(corner)) return false;
+    each(level, *kind, step);
+    kind = step.nets[0].kind;
+    corner = step.nets[0].own;
+  }
+  return net.corner < 3;
 }
 
-RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind, unsigned levels)
-    : control_count_(kind.control_count()) {
-  const BoundingRows rows = make_bounding_rows(kind, levels);
-  const Stencils& limits = kind.corner_limits();
-  weights_.assign((3 + rows.count()) * control_count_, 0.0);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Stencils::Row row = limits.row(k);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) {
-      weights_[k * control_count_ + row.sources[i]] += row.weights[i];
-    }
-  }
-  for (std::size_t r = 0; r < rows.count(); ++r) {
-    for (std::size_t c = 0; c < control_count_; ++c) {
-      weights_[(3 + r) * control_count_ + c] = rows.weight(r, c);
-    }
-  }
-  for (const BoundingRows::Net& net : rows.nets()) {
-    Tip& own = tips_.emplace_back(Tip{3 + net.begin, net.kind->control_count(), {}, {}});
-    own.table = flatten(library.tip_table(*net.kind), *net.kind, own.columns);
-  }
-  // Derivations/rounding.md, "Batches".
-  const double most = std::max(1.0, rows.abs_sum());
-  error_of_largest_ = enlarged(3 * (gamma_bound(control_count_ + 16) * most + rows.entry_error()));
+}  // namespace
+
+bool RowsWithTips::fit(BoundsCache& library, const Kind& kind) {
+  if (!kind.cacheable() || kind.polynomial() || !has_self_similar_tips(kind)) return false;
+  const std::vector<LevelStep::Net> nets = library.level_step(kind).nets;
+  return nets.size() <= most_tips && std::all_of(nets.begin(), nets.end(), [&](const LevelStep::Net& net) {
+           return follow(library, net, [](unsigned, const Kind&, const LevelStep&) {});
+         });
 }
 
-void fit_rows(const RowsWithTips& rows, std::span<const Point3> points, std::span<const VertexId> control,
-              std::span<OffsetTriangle> out) {
-  HWY_DYNAMIC_DISPATCH(FitRows)(rows, points, control.data(), out);
+// Errors in units of the largest coordinate: derivations/rounding.md, "Batches".
+RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind) {
+  std::map<const Kind*, const LevelStep*> known;
+  const auto keep = [&](const Kind& of, const LevelStep& step) {
+    const LevelStep*& own = known[&of];
+    if (!own) own = steps_.emplace_back(std::make_unique<const LevelStep>(step)).get();
+    most_points_ = std::max(most_points_, own->points.row_count());
+    return own;
+  };
+  const auto pass_on = [&](const LevelStep& step, double& size, double& error) {
+    error = step.points.result_error(size, error);
+    size *= std::max(1.0, step.points.max_abs_sum());
+    error_of_largest_ = std::max(error_of_largest_, step.bezier.result_error(size, error));
+  };
+  double first_size = 2, first_error = enlarged(3 * gamma_bound(16));
+  const LevelStep& first = *keep(kind, library.level_step(kind));
+  pass_on(first, first_size, first_error);
+  for (const LevelStep::Net& net : first.nets) {
+    Tip& tip = tips_.emplace_back(Tip{net.control, {&first}, {}, {}});
+    const Kind* last = net.kind;
+    double size = first_size, error = first_error;
+    follow(library, net, [&](unsigned level, const Kind& of, const LevelStep& step) {
+      tip.steps[level] = keep(of, step);
+      pass_on(step, size, error);
+      last = &of;
+    });
+    tip.table = flatten(library.tip_table(*last), *last, tip.columns);
+    error_of_largest_ = std::max(error_of_largest_, error);
+  }
+}
+
+std::size_t RowsWithTips::bezier_count(unsigned levels) const {
+  std::size_t count = first_step().bezier.row_count();
+  for (const Tip& tip : tips_) {
+    for (unsigned level = 1; level < levels; ++level) count += tip.steps[level]->bezier.row_count();
+  }
+  return count;
+}
+
+void fit_rows(const RowsWithTips& rows, unsigned levels, std::span<const Point3> points,
+              std::span<const VertexId> control, std::span<OffsetTriangle> out) {
+  SNUG_EXPECT(levels >= RowsWithTips::least_levels && levels <= RowsWithTips::most_levels);
+  HWY_DYNAMIC_DISPATCH(FitRows)(rows, levels, points, control.data(), out);
 }
 
 }  // namespace snug::kernels

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -9,35 +12,42 @@
 
 namespace snug::kernels {
 
-/// Input of fit_rows() for a kind: its rows of a few levels, and tables for the tips below these.
+/// Input of fit_rows() for a kind: its steps, level by level, and tables for the tips below these.
 class RowsWithTips {
  public:
-  /// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips?
-  [[nodiscard]] static bool fit(const Kind& kind);
-  /// Tips begin `levels` down.
-  /// Requires:  fit(kind); the library outlives this.
-  RowsWithTips(BoundsCache& library, const Kind& kind, unsigned levels);
+  /// Where tips are, which are of kinds that come again by then.
+  static constexpr unsigned least_levels = 3, most_levels = 6;
+  static constexpr std::size_t most_tips = 3;
 
+  /// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips, one a corner?
+  [[nodiscard]] static bool fit(BoundsCache& library, const Kind& kind);
+  /// Requires:  fit(kind); kind and library outlive this.
+  RowsWithTips(BoundsCache& library, const Kind& kind);
+
+  /// A piece that is no polynomial: its net, the steps that it takes from there, level by level, and the table of their last kind.
   struct Tip {
-    std::size_t begin, count;  ///< its control net among the rows
+    std::span<const std::uint32_t> control;
+    std::array<const LevelStep*, most_levels> steps;  // the first is the patch's
     FlatTable table;
     std::vector<TableColumn> columns;
   };
-  [[nodiscard]] std::size_t control_count() const { return control_count_; }
-  [[nodiscard]] std::size_t count() const { return weights_.size() / control_count_; }
-  /// Weights of a row: first three of the limits of the corners, then points whose hull contains the patch
-  /// but its tips, then the nets of these.
-  [[nodiscard]] const double* row(std::size_t r) const { return weights_.data() + r * control_count_; }
+  [[nodiscard]] const Kind& kind() const { return *kind_; }
+  /// Of the patch itself.
+  [[nodiscard]] const LevelStep& first_step() const { return *steps_.front(); }
   [[nodiscard]] const std::vector<Tip>& tips() const { return tips_; }
-  [[nodiscard]] std::size_t tips_begin() const { return tips_.empty() ? count() : tips_.front().begin; }
+  /// At most, of a step.
+  [[nodiscard]] std::size_t most_points() const { return most_points_; }
+  /// After so many levels.
+  [[nodiscard]] std::size_t bezier_count(unsigned levels) const;
   /// Times the largest |coordinate| of a control point, relative to any point: what a point is off by.
   [[nodiscard]] double error_of_largest() const { return error_of_largest_; }
 
  private:
-  std::size_t control_count_;
-  std::vector<double> weights_;
+  const Kind* kind_;
+  std::vector<std::unique_ptr<const LevelStep>> steps_;  // of the patch, then of tips
   std::vector<Tip> tips_;
-  double error_of_largest_;
+  std::size_t most_points_ = 0;
+  double error_of_largest_ = 0;
 };
 
 /// Offset triangles of many patches of one kind with extraordinary corners, a patch a lane. A negative radius
@@ -47,10 +57,10 @@ class RowsWithTips {
 ///            their normal to the middle of what bounds it; in the kind's order of corners.
 ///            No answer where farthest() has none, and where tips stick out of the rest by 3 %: more levels may
 ///            have one.
-/// Requires:  control: rows.control_count() vertices of `points` a patch, in the kind's order; out.size()
-///            patches; points as in farthest().
-/// Cost:      six operations a row and control point, and some 30 a row.
-void fit_rows(const RowsWithTips& rows, std::span<const Point3> points, std::span<const VertexId> control,
-              std::span<OffsetTriangle> out);
+/// Requires:  levels from least_levels to most_levels; control: rows.kind().control_count() vertices of `points` a
+///            patch, in the kind's order; out.size() patches; points as in farthest().
+/// Cost:      some 90 operations a Bezier point, of which a level of a tip has about 36.
+void fit_rows(const RowsWithTips& rows, unsigned levels, std::span<const Point3> points,
+              std::span<const VertexId> control, std::span<OffsetTriangle> out);
 
 }  // namespace snug::kernels

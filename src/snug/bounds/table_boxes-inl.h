@@ -67,7 +67,7 @@ HWY_INLINE void begin_boxes(D d, const FlatTable& table, const LinearV<V>* linea
     const LinearV<V>& l = linear[a];
     largest = hn::Max(largest, hn::Max(hn::Abs(l.along_one), hn::Abs(l.along_two)));
     for (std::size_t k = 0; k < 3; ++k) {
-      middle[a][k] = from_origin(d, l, (*table.triangle)[k][0], (*table.triangle)[k][1]);
+      middle[a][k] = from_origin(d, l, table.triangle[k][0], table.triangle[k][1]);
       half[a][k] = hn::Zero(d);
     }
   }

@@ -18,9 +18,8 @@ namespace {
 
 constexpr std::size_t chunk_size = 256;
 
-// Levels of rows that patches are tried with in turn, where at least so many of the surface share them.
+// Levels of rows that patches are tried with in turn.
 constexpr unsigned levels_of_rows[] = {3, 6};
-constexpr std::size_t patches_for_rows = 64;
 
 // One a thread; keeps its memory from call to call.
 struct Scratch {
@@ -65,16 +64,6 @@ std::vector<PatchId> all_patches(const LimitSurface& surface) {
   return patches;
 }
 
-// Of the whole surface, so that a patch's bound does not depend on which others are asked for.
-// Requires:  surface.find_kinds().
-std::vector<std::size_t> patches_by_kind(const LimitSurface& surface) {
-  std::vector<std::size_t> counts(surface.library().kinds().size());
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (surface.has_patch(PatchId(p))) ++counts[surface.kind(PatchId(p)).id().index()];
-  }
-  return counts;
-}
-
 // `unused`: vertices to pass over, in increasing order.
 PowerOfTwo normalising(std::span<const Point3> points, std::span<const VertexId> unused) {
   double largest = 0, probe = 0;
@@ -111,19 +100,15 @@ BatchBounds::BatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
   surface.find_kinds(threads);
   sort_by_kind(surface);
   collect_control(surface);
-  const std::vector<std::size_t> of_kind = patches_by_kind(surface);
   parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       Group& group = groups_[g];
       if (method == BoundMethod::table) {
         group.table = &library_->table(*group.kind);
+      } else if (!group.polygon && kernels::RowsWithTips::fit(*library_, *group.kind)) {
+        group.rows.emplace(*library_, *group.kind);
       } else {
         prepare_bounding_points(*library_, *group.kind);
-        if (of_kind[group.kind->id().index()] >= patches_for_rows && !group.polygon &&
-            kernels::RowsWithTips::fit(*group.kind)) {
-          for (const unsigned levels : levels_of_rows)
-            group.rows.emplace_back(*library_, *group.kind, levels);
-        }
       }
       static_cast<void>(group.kind->corner_limits());
     }
@@ -143,7 +128,7 @@ void BatchBounds::sort_by_kind(const LimitSurface& surface) {
                                    : group_of_kind[kind.id().index()];
     if (group == none) {
       group = static_cast<std::uint32_t>(groups_.size());
-      groups_.push_back({&kind, polygon, part, nullptr, 0, 0, {}});
+      groups_.push_back({&kind, polygon, part, nullptr, 0, 0, std::nullopt});
       sizes.push_back(0);
     }
     ++sizes[group];
@@ -202,25 +187,23 @@ void BatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangl
 // Each time those without an answer again.
 void BatchBounds::fit_by_rows(const Group& group, std::span<const VertexId> control,
                               std::span<OffsetTriangle> answers) const {
-  kernels::fit_rows(group.rows.front(), scaled_, control, answers);
   thread_local std::vector<VertexId> rest;
   thread_local std::vector<OffsetTriangle> again;
   const std::size_t controls = control_count(group);
-  for (std::size_t stage = 1; stage < group.rows.size(); ++stage) {
-    rest.clear();
-    rest.reserve(answers.size() * controls);
-    again.reserve(answers.size());
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      if (answers[i].radius >= 0) continue;
-      const auto own = control.subspan(i * controls, controls);
-      rest.insert(rest.end(), own.begin(), own.end());
-    }
-    again.resize(rest.size() / controls);
-    kernels::fit_rows(group.rows[stage], scaled_, rest, again);
-    auto next = again.begin();
-    for (OffsetTriangle& answer : answers) {
-      if (answer.radius < 0) answer = *next++;
-    }
+  kernels::fit_rows(*group.rows, levels_of_rows[0], scaled_, control, answers);
+  rest.clear();
+  rest.reserve(control.size());
+  again.reserve(answers.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (answers[i].radius >= 0) continue;
+    const auto own = control.subspan(i * controls, controls);
+    rest.insert(rest.end(), own.begin(), own.end());
+  }
+  again.resize(rest.size() / controls);
+  kernels::fit_rows(*group.rows, levels_of_rows[1], scaled_, rest, again);
+  auto next = again.begin();
+  for (OffsetTriangle& answer : answers) {
+    if (answer.radius < 0) answer = *next++;
   }
 }
 
@@ -239,7 +222,7 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
     kernels::fit_regular(scaled_, control, answers);
   } else if (by_rows && kind.rules().kernel == RegularKernel::bicubic) {
     kernels::fit_bicubic(scaled_, control, answers);
-  } else if (!group.rows.empty()) {
+  } else if (group.rows) {
     fit_by_rows(group, control, answers);
   } else {
     for (OffsetTriangle& answer : answers) answer.radius = -1;

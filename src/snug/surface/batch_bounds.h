@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,9 +32,9 @@ class BatchBounds {
     const Kind* kind;
     const Kind* polygon;  // none: from control points
     std::uint32_t part;
-    const BoundTable* table;                  // none: from rows
-    std::size_t first_place, first_control;   // in places_ and control_
-    std::vector<kernels::RowsWithTips> rows;  // of few levels, then of more; none: another way
+    const BoundTable* table;                    // none: from rows
+    std::size_t first_place, first_control;     // in places_ and control_
+    std::optional<kernels::RowsWithTips> rows;  // none: another way
   };
   // Patches [begin, end) of places_, all of one group: what one thread does at once.
   struct Chunk {
