@@ -149,6 +149,8 @@ class Judge {
     const bool meets = found.verdict == SelfVerdict::intersecting;
     std::string text = meets ? "the surface meets itself: " : "not proved clear of itself: ";
     text += place(found.pairs[0]);
+    const std::string vertex = meets ? "" : vertex_at(surface_, *found.pairs[0].points[0].at);
+    if (!vertex.empty()) text += " (" + vertex + ")";
     if (found.pairs.size() > 1) {
       text += fmt::format(", and at {} more places{}", found.pairs.size() - 1,
                           found.pairs.size() == SelfContact::max_pairs ? " at least" : "");

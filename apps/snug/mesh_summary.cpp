@@ -1,5 +1,10 @@
 #include "mesh_summary.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
 #include <fmt/core.h>
 #include <snug/evaluate.h>
 #include <support/number.h>
@@ -24,6 +29,24 @@ std::string taken_as(const MeshSummary& summary, const ControlMesh& mesh, const 
     text += ", within " + text_of_length(*summary.apart, summary.surface->size()) + " of its faces";
   }
   return text;
+}
+
+constexpr double beside = 0.01;  // as parameters
+
+// The corner of its face that a place is at.
+std::optional<VertexId> corner_at(const Surface& surface, const Place& place) {
+  const auto face = surface.mesh().face(FaceId(place.owner));
+  const auto at = [&](double u, double v) { return std::abs(place.u - u) + std::abs(place.v - v) < beside; };
+  constexpr std::array<std::array<double, 2>, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  const bool triangle = surface.traits().triangular;
+  if (!triangle && face.size() != corners.size()) {
+    return at(0, 0) ? std::optional(face[place.corner % face.size()]) : std::nullopt;
+  }
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const auto [u, v] = corners[triangle && k == 2 ? 3 : k];
+    if (at(u, v)) return face[k];
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -80,6 +103,33 @@ std::string overlap_sentence(const MeshSummary& summary) {
       "includes both, and its volume counts their common part twice; if the shell bounds a cavity, turn its "
       "faces",
       traits_of(summary.scheme).owner(), *summary.twice);
+}
+
+std::string vertex_at(const Surface& surface, const Place& place) {
+  if (surface.traits().dual) return "";
+  const std::optional<VertexId> vertex = corner_at(surface, place);
+  if (!vertex) return "";
+  const ControlMesh& mesh = surface.mesh();
+  std::size_t faces = 0;
+  std::map<VertexId, std::size_t> beside_edge;  // faces of each edge, by its other end
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      if (face[k] != *vertex) continue;
+      ++faces;
+      ++beside_edge[face[(k + 1) % face.size()]];
+      ++beside_edge[face[(k + face.size() - 1) % face.size()]];
+    }
+  }
+  const auto alone = std::count_if(beside_edge.begin(), beside_edge.end(),
+                                   [](const auto& edge) { return edge.second == 1; });
+  const auto creases = std::count_if(
+      mesh.tags.creases.begin(), mesh.tags.creases.end(),
+      [&](const CreaseTag& tag) { return tag.sharpness > 0 && (tag.a == *vertex || tag.b == *vertex); });
+  std::string text = fmt::format("vertex {} of {} face{}", vertex->value(), faces, faces == 1 ? "" : "s");
+  if (alone > 0) text += ", on the border";
+  if (creases > 0) text += fmt::format(", with {} crease{}", creases, creases == 1 ? "" : "s");
+  return text;
 }
 
 }  // namespace snug::command

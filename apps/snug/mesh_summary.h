@@ -32,5 +32,8 @@ struct MeshSummary {
                                                 const std::string& path, const CommonOptions& options);
 /// A sentence about `twice`, without a full stop.
 [[nodiscard]] std::string overlap_sentence(const MeshSummary& summary);
+/// The vertex of the mesh that a place is at or hardly beside, such as "vertex 7 of 5 faces, 2 creases"; empty elsewhere, and in a
+/// dual scheme.
+[[nodiscard]] std::string vertex_at(const Surface& surface, const Place& place);
 
 }  // namespace snug::command

@@ -7,6 +7,7 @@
 
 #include "common.h"
 #include "length.h"
+#include "mesh_summary.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -42,7 +43,8 @@ void write_json(JsonWriter& json, const SelfContact& found, std::optional<double
 }
 
 void write_text(Report& report, const SelfContact& found, std::optional<double> tolerance,
-                const char* owner) {
+                const Surface& surface) {
+  const char* const owner = surface.traits().owner();
   report.text(fmt::format("verdict   {}", name_of(found.verdict)));
   if (tolerance) {
     report.text(fmt::format("near      at most {} apart, and more than {} along the surface", *tolerance,
@@ -56,6 +58,10 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
         fmt::format("{:<12}  {} {} and {}, at {} {} {}", pair.touching ? "touching" : name_of(pair.verdict),
                     owner, pair.points[0].at->owner, pair.points[1].at->owner, p.x, p.y, p.z);
     if (pair.verdict == SelfVerdict::near) line += fmt::format(", at most {} apart", pair.distance.upper);
+    if (pair.verdict == SelfVerdict::undecided) {
+      const std::string vertex = vertex_at(surface, *pair.points[0].at);
+      line += ": " + (vertex.empty() ? "pieces too near to each other to be told apart" : vertex);
+    }
     report.text(line);
   }
   if (found.pairs.size() > max_lines) {
@@ -82,7 +88,7 @@ ExitStatus run(const Options& options) {
   report.heads({options.mesh}, {name_of(surface.scheme())});
   const char* const owner = surface.traits().owner();
   if (report.json()) write_json(report.write(), found, wanted.within, owner);
-  write_text(report, found, wanted.within, owner);
+  write_text(report, found, wanted.within, surface);
   return report.finish(found.verdict != SelfVerdict::undecided);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -91,6 +92,21 @@ TEST_F(self_command, ends_with_five_where_nothing_is_decided) {
   const Outcome outcome = run(box, {"--json", "--max-splits", "0"});
   EXPECT_EQ(outcome.status, 5);
   EXPECT_EQ(json::parse(outcome.out)["verdict"], "undecided");
+}
+
+// Half of a disc of eight triangles around a vertex of the border.
+TEST(self_places, names_the_vertex_that_is_in_the_way) {
+  const TemporaryFolder folder;
+  std::string text = "v 0 0 0\n", faces;
+  for (int k = 0; k <= 8; ++k) {
+    text += "v " + std::to_string(std::cos(k * M_PI / 8)) + ' ' + std::to_string(std::sin(k * M_PI / 8)) +
+            " 0.1\n";
+    if (k < 8) faces += "f 1 " + std::to_string(k + 2) + ' ' + std::to_string(k + 3) + '\n';
+  }
+  std::ofstream(folder.file("fan.obj")) << text << faces;
+  const Outcome outcome = run_snug({"self-contact", folder.file("fan.obj"), "--scheme", "loop"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_NE(outcome.out.find("vertex 0 of 8 faces, on the border"), std::string::npos) << outcome.out;
 }
 
 }  // namespace

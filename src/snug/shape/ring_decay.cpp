@@ -203,8 +203,7 @@ std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicM
     if (lasting->chained || lasting->ratio.lower > 1) {
       decay.growth = lasting->links > 1 ? RingDecay::Growth::of_some : RingDecay::Growth::of_one;
     }
-    if (!DecaySearch(step, kind.corner_limits().row(corner), *lasting).find(decay))
-      return std::nullopt;
+    if (!DecaySearch(step, kind.corner_limits().row(corner), *lasting).find(decay)) return std::nullopt;
     return decay;
   }
   return std::nullopt;
