@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "common.h"
 #include "length.h"
@@ -51,22 +53,28 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
                             found.radius));
   }
   constexpr std::size_t max_lines = 10;
-  for (std::size_t i = 0; i < std::min(max_lines, found.pairs.size()); ++i) {
-    const SelfContactPair& pair = found.pairs[i];
+  std::size_t lines = 0, left = 0;
+  std::set<std::string> vertices;
+  for (const SelfContactPair& pair : found.pairs) {
+    const bool undecided = pair.verdict == SelfVerdict::undecided;
+    const std::string vertex = undecided ? vertex_at(surface, *pair.points[0].at) : "";
+    // All that is undecided around a vertex is one place.
+    if (!vertex.empty() && !vertices.insert(vertex).second) continue;
+    if (lines == max_lines) {
+      ++left;
+      continue;
+    }
     const Point3& p = pair.points[0].point;
     std::string line =
         fmt::format("{:<12}  {} {} and {}, at {} {} {}", pair.touching ? "touching" : name_of(pair.verdict),
                     owner, pair.points[0].at->owner, pair.points[1].at->owner, p.x, p.y, p.z);
     if (pair.verdict == SelfVerdict::near) line += fmt::format(", at most {} apart", pair.distance.upper);
-    if (pair.verdict == SelfVerdict::undecided) {
-      const std::string vertex = vertex_at(surface, *pair.points[0].at);
+    if (undecided)
       line += ": " + (vertex.empty() ? "pieces too near to each other to be told apart" : vertex);
-    }
     report.text(line);
+    ++lines;
   }
-  if (found.pairs.size() > max_lines) {
-    report.text(fmt::format("... {} more; --json lists all", found.pairs.size() - max_lines));
-  }
+  if (left > 0) report.text(fmt::format("... {} more; --json lists all", left));
 }
 
 ExitStatus run(const Options& options) {
