@@ -160,12 +160,14 @@ TEST(evaluate_in_single_precision, refuses_what_does_not_fit) {
   const LimitSurface surface = mixed_surface(Scheme::catmark, 0x1p130);
   const std::vector<Place> places = shuffled_places(surface, 10);
   std::vector<float> out(3 * places.size());
-  try {
-    evaluate(surface, places, {out}, 1);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.problem(), InputProblem::unrepresentable);
-  }
+  testing::EachInstructionSet().run([&](const char* name) {
+    try {
+      evaluate(surface, places, {out}, 1);
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.problem(), InputProblem::unrepresentable) << name;
+    }
+  });
 }
 
 TEST(evaluate, of_flat_and_bilinear_faces_is_linear_between_their_corners) {

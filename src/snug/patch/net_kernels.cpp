@@ -3,6 +3,7 @@
 #include <snug/geometry/vector_code-inl.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/net_kernels.h>
@@ -285,6 +286,8 @@ void PointsOnLattice(const LatticePoints& piece, const LatticeParameters& at, Bo
 
 double RoundPoints(std::span<const BoundedPoint> points, const std::size_t* numbers, float* out) {
   const hn::Rebind<float, decltype(d4)> f4;
+  // The least number that rounds to no float, for which DemoteTo() gives the largest one where there are no vectors.
+  const V too_large = hn::Set(d4, 0x1.ffffffp127);
   Sum largest = load(NetPoint{});
   for (const BoundedPoint& point : points) {
     float rounded[4];
@@ -292,8 +295,9 @@ double RoundPoints(std::span<const BoundedPoint> points, const std::size_t* numb
       const V exact = hn::LoadU(d4, &point.position.x + k * lanes);
       const auto near = hn::DemoteTo(f4, exact);
       hn::StoreU(near, f4, rounded + k * lanes);
-      const V off = hn::Abs(hn::Sub(hn::PromoteTo(d4, near), exact));
-      largest.part[k] = hn::Max(largest.part[k], hn::Add(off, hn::Set(d4, point.error)));
+      const V off = hn::Add(hn::Abs(hn::Sub(hn::PromoteTo(d4, near), exact)), hn::Set(d4, point.error));
+      largest.part[k] = hn::Max(
+          largest.part[k], hn::IfThenElse(hn::Lt(hn::Abs(exact), too_large), off, hn::Set(d4, INFINITY)));
     }
     std::copy_n(rounded, 3, out + 3 * *numbers++);
   }
