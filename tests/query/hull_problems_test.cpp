@@ -98,7 +98,7 @@ TEST(hull_problems, of_a_component_on_the_wrong_side_are_found) {
   }
 }
 
-// What goes through itself has no hulls, and that is said at once; what only touches itself may have an inner one.
+// What goes through itself has not both hulls, and that is said at once; what only touches itself may have an inner one.
 TEST(hull_problems, of_a_surface_through_itself_are_where_it_goes_through) {
   const auto two = [](const std::array<double, 3>& apart, Scheme scheme) {
     const TaggedMesh mesh = both(meshes::cube(), moved(meshes::cube(), 1, apart));
@@ -113,6 +113,13 @@ TEST(hull_problems, of_a_surface_through_itself_are_where_it_goes_through) {
       EXPECT_TRUE(problem.owner.has_value());
     }
   }
+  // The cubes are through each other by less than their inner hull is off them; a plate beside them takes a second round.
+  TaggedMesh plate = moved(meshes::cube(), 1, {0, 3, 0});
+  for (auto& p : plate.points) p[2] *= 0.01;
+  const TaggedMesh cubes = both(meshes::cube(), moved(meshes::cube(), 1, {0.995, 0.1, 0.15}));
+  const Surface solids(testing::control_mesh(both(cubes, plate)), {.scheme = Scheme::bilinear});
+  EXPECT_EQ(hull(solids, {.error = 0.2, .outer = false}).outcome, Outcome::complete);
+  EXPECT_EQ(hull(solids, {.error = 0.2}).problems.at(0).fault, HullFault::through_itself);
   const Surface touching = two({1, 0, 0}, Scheme::bilinear);
   EXPECT_EQ(hull(touching, {.error = 0.02, .outer = false}).outcome, Outcome::complete);
   for (const HullProblem& problem : hull(touching, {.error = 0.02, .inner = false}).problems) {

@@ -663,7 +663,8 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
   std::optional<PieceSet> pieces(std::in_place);
   Hulls result;
-  bool may_meet_itself = true;
+  // Two balls that go through each other a little have an inner hull, and no outer one; turned inside out the other way round.
+  bool may_meet_itself = options.inner && options.outer;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
     OneHull side(surface, options, inner, *pieces, run);
