@@ -145,16 +145,12 @@ std::size_t count_coincident(const std::vector<Edge>& boundary, const std::vecto
   return count;
 }
 
-// Places that stand within reach of an edge, and farther from its ends.
+// Places that stand within reach of an edge, and farther from its ends. `size` is the longest side of the box around all.
 std::size_t count_on_edges(const std::vector<Point3>& places, const ControlMesh& mesh,
-                           const std::vector<Edge>& boundary, double reach) {
+                           const std::vector<Edge>& boundary, double size, double reach) {
   if (boundary.empty()) return 0;
   std::vector<Box3> boxes{Box3{}};  // the tree finds items above one of them
-  for (const auto& [a, b] : boundary) {
-    Box3& box = boxes.emplace_back();
-    box.add(mesh.points[a.index()]);
-    box.add(mesh.points[b.index()]);
-  }
+  for (const Point3& p : places) boxes.emplace_back().add(p);
   boxes[0] = boxes[1];
   const BoxTree tree(boxes);
   const auto is_on = [&](const Point3& p, const Edge& edge) {
@@ -165,15 +161,23 @@ std::size_t count_on_edges(const std::vector<Point3>& places, const ControlMesh&
     const double long_side = std::sqrt(square);
     return length(from - t * along) <= reach && std::min(t, 1 - t) * long_side > reach;
   };
-  std::size_t count = 0;
-  for (const Point3& p : places) {
-    Box3 box;
-    box.add(p);
-    bool found = false;
-    tree.find_near(box, reach, 0, [&](std::uint32_t item) { found = found || is_on(p, boundary[item - 1]); });
-    count += found;
+  // The box of a long edge may hold most places, those of its parts few.
+  const double part = size / std::cbrt(static_cast<double>(places.size()));
+  std::vector<bool> counted(boxes.size(), false);
+  for (const Edge& edge : boundary) {
+    const Point3& start = mesh.points[edge.first.index()];
+    const Vector3 along = mesh.points[edge.second.index()] - start;
+    const double parts = std::clamp(std::ceil(max_abs(along) / part), 1.0, 64.0);
+    for (double i = 0; i < parts; ++i) {
+      Box3 box;
+      box.add(start + i / parts * along);
+      box.add(start + (i + 1) / parts * along);
+      tree.find_near(box, 2 * reach, 0, [&](std::uint32_t item) {
+        counted[item] = counted[item] || is_on(places[item - 1], edge);
+      });
+    }
   }
-  return count;
+  return static_cast<std::size_t>(std::count(counted.begin(), counted.end(), true));
 }
 
 void find_near_vertices(const ControlMesh& mesh, const std::vector<Edge>& boundary,
@@ -196,7 +200,7 @@ void find_near_vertices(const ControlMesh& mesh, const std::vector<Edge>& bounda
     found.farthest = std::max(found.farthest, apart);
     ++found.near;
   }
-  found.on_edges = count_on_edges(points, mesh, boundary, found.reach);
+  found.on_edges = count_on_edges(points, mesh, boundary, 0x1p17 * found.reach, found.reach);
 }
 
 // Is the face long beside its area? Of no area counts as not.
