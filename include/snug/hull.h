@@ -64,8 +64,9 @@ struct Hulls {
 ///            Hull::gap <= error from each other; the solid of a closed surface lies inside the outer hull
 ///            and contains the inner one. Everything holds for the returned doubles and, except for a gap below
 ///            the error, was proved from them, not from how they were found. A surface that goes through itself has not both
-///            hulls, which is said once the first fails of both, where it can be proved; envelope() is for it. One that touches
-///            itself, or whose sheets leave no room between them, is usually not `complete`.
+///            hulls, which is said, where it can be proved, once the first of both fails, or one alone for some rounds;
+///            envelope() is for it. One that touches itself, or whose sheets leave no room between them, is usually not
+///            `complete`.
 /// Budget:    1,000,000 triangles of a hull; 2 to 3 kB each; if hulls fail, up to 10 kB each and 100 MB more.
 /// Errors:    InputError: (value) for an error that is not finite and positive, above half the size, or
 ///            too small for doubles or floats; (refused), naming two faces, if these run along an edge in the

@@ -419,5 +419,34 @@ TEST(self_contact, of_borders_whose_vertices_coincide_touches) {
   }
 }
 
+// Scaling rounds what lies below the least normal double: such coordinates are never said to be equal, or in a plane.
+TEST(self_contact, takes_no_rounded_coordinate_for_another_one) {
+  constexpr double tiny = 5e-324;
+  ControlMesh apart;
+  apart.points = {{0, 0, 0},         {8, 0, 1},  {0, 8, 2},  {8, 8, 7},
+                  {-tiny, -tiny, 0}, {-8, 0, 1}, {0, -8, 2}, {-8, -8, 7}};
+  for (const auto& f : {std::array{0, 1, 2}, std::array{1, 3, 2}, std::array{4, 5, 6}, std::array{5, 7, 6}}) {
+    apart.add_face(
+        std::array{VertexId(std::size_t(f[0])), VertexId(std::size_t(f[1])), VertexId(std::size_t(f[2]))});
+  }
+  EXPECT_NE(self_contact(Surface(apart, {.scheme = Scheme::loop})).verdict, SelfVerdict::intersecting);
+  apart.points[4] = {0, 0, 0};
+  EXPECT_EQ(self_contact(Surface(apart, {.scheme = Scheme::loop})).verdict, SelfVerdict::intersecting);
+
+  // A strip that turns back over itself, and rises as it does.
+  ControlMesh strip;
+  for (const double y : {0.0, 8.0}) {
+    strip.points.insert(
+        strip.points.end(),
+        {{0, y, 0}, {8, y, 0}, {16, y, 0}, {17, y, tiny}, {9, y, 2 * tiny}, {2, y, 3 * tiny}});
+  }
+  for (std::size_t k = 0; k < 5; ++k) {
+    strip.add_face(std::array{VertexId(k), VertexId(k + 1), VertexId(k + 7), VertexId(k + 6)});
+  }
+  EXPECT_NE(self_contact(Surface(strip, {.scheme = Scheme::catmark})).verdict, SelfVerdict::intersecting);
+  for (Point3& p : strip.points) p.z = 0;
+  EXPECT_EQ(self_contact(Surface(strip, {.scheme = Scheme::catmark})).verdict, SelfVerdict::intersecting);
+}
+
 }  // namespace
 }  // namespace snug::self_test

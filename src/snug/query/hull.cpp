@@ -61,7 +61,9 @@ constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
 // And how far Bezier points of its parts may stick out of them.
 constexpr double flat_share = 0x1p-5;
 constexpr std::size_t max_problems = 100, max_contacts = 1'000'000;
-constexpr int max_rounds = 24, asked_after = 0;  // whether the surface meets itself
+constexpr int max_rounds = 24;
+// After which it is asked whether the surface meets itself, if one hull is wanted; of both the first to fail asks at once.
+constexpr int rounds_alone = 4;
 // Most quadratics that facets are kept off: of the budget, and beside a few of them.
 constexpr std::uint64_t pieces_a_triangle = 16, pieces_beside = 1u << 17;
 // To show that a hull is off the surface: splits, and different pieces split of each, for each of its triangles and
@@ -253,7 +255,7 @@ class OneHull {
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left; those of `hopeless`
   // alone if that names some, which is asked once something is wrong.
-  std::vector<HullProblem> run(const std::function<std::vector<HullProblem>()>& hopeless) {
+  std::vector<HullProblem> run(const std::function<std::vector<HullProblem>(int round)>& hopeless) {
     for (int round = 0;; ++round) {
       LocalTessellation made = tessellate(surface_, tolerances_.of_owners(), {.normals = false}, run_);
       mesh_ = std::move(made.mesh);
@@ -269,9 +271,7 @@ class OneHull {
       if (!pieces_.begin_round(surface_, error, run_) && !blame_budget()) break;
       if (!facets_.any_turned) keep_off();
       if (problems_.empty()) break;
-      if (round == asked_after) {
-        if (std::vector<HullProblem> found = hopeless(); !found.empty()) return found;
-      }
+      if (std::vector<HullProblem> found = hopeless(round); !found.empty()) return found;
       if (round + 1 == max_rounds || !whole_mesh() || !refine()) break;
     }
     return std::move(problems_);
@@ -664,13 +664,14 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
   std::optional<PieceSet> pieces(std::in_place);
   Hulls result;
   // Two balls that go through each other a little have an inner hull, and no outer one; turned inside out the other way round.
-  bool may_meet_itself = options.inner && options.outer;
+  const int asked_from = options.inner && options.outer ? 0 : rounds_alone;
+  bool may_meet_itself = true;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
     OneHull side(surface, options, inner, *pieces, run);
-    const std::vector<HullProblem> problems = side.run([&] {
-      return std::exchange(may_meet_itself, false) ? contacts_of(handle, surface, inner, run)
-                                                   : std::vector<HullProblem>();
+    const std::vector<HullProblem> problems = side.run([&](int round) {
+      if (round < asked_from || !std::exchange(may_meet_itself, false)) return std::vector<HullProblem>();
+      return contacts_of(handle, surface, inner, run);
     });
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
     result.closed = !side.has_border_edges();

@@ -19,6 +19,13 @@ constexpr unsigned fold_levels = 4;
 // Weights of limit points of curves, 1/6 and 2/3, are known this well.
 constexpr double weight_error = 1e-12;
 
+// Scaling may round small coordinates, and then tells nothing exactly.
+bool scaled_exactly(const LimitSurface& surface, VertexId vertex) {
+  const Point3& p = surface.mesh().points[vertex.index()];
+  const PowerOfTwo scale = surface.scale();
+  return scale.exact(p.x) && scale.exact(p.y) && scale.exact(p.z);
+}
+
 using Coordinates = std::tuple<double, double, double>;
 Coordinates coordinates(const Point3& p) {
   // -0 and 0 are one.
@@ -38,6 +45,7 @@ std::optional<Corner> corner_of(const LimitSurface& surface, const Stencils::Row
     const VertexId vertex = names[row.sources[i]];
     const double weight = row.weights[i];
     if (weight == 0) continue;
+    if (!scaled_exactly(surface, vertex)) return std::nullopt;
     if (std::fabs(weight - (row.sources.size() == 1 ? 1 : 2.0 / 3)) <= weight_error && !own) {
       own = vertex;
     } else if (std::fabs(weight - 1.0 / 6) <= weight_error) {
@@ -60,7 +68,7 @@ std::optional<Vector3> plane_of(const LimitSurface& surface) {
     const VertexId vertex(static_cast<std::uint32_t>(v));
     if (std::binary_search(surface.isolated().begin(), surface.isolated().end(), vertex)) continue;
     points.push_back(&surface.scaled_point(vertex));
-    if (!may_be_signed(*points.back())) return std::nullopt;
+    if (!may_be_signed(*points.back()) || !scaled_exactly(surface, vertex)) return std::nullopt;
   }
   if (points.empty()) return std::nullopt;
   const auto on_line = [](const Point3& a, const Point3& b, const Point3& c) {

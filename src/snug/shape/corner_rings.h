@@ -48,7 +48,6 @@ class CornerRings {
   const RingDecay* decay_;
   Stencils step_;
   const Patch* values_;
-  Interval ratio_{1};     // of the larger eigenvalue to the other one
   double least_off_ = 0;  // of that one, relative to it
   std::vector<Level> levels_;
   double all_off_ = 0, growing_off_ = 0;  // sums of what each step was off, as it is and grown

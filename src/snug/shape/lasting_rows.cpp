@@ -283,6 +283,7 @@ std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t s
             {1},
             false,
             0};
+  if (!(result.least.lower > 0)) return std::nullopt;
   result.ratio = around(first) / result.least;
   return result;
 }

@@ -163,6 +163,8 @@ class DecaySearch {
       }
     }
     if (!(static_cast<double>(m) * mixing < 0x1p-24)) return false;
+    double widest = 0;
+    for (const Row& column : columns_) widest = std::max(widest, extent(column));
     for (std::size_t t = 0; t < m; ++t) {
       // The part of the image that W does not see, generously: with all roundings it is far below 1.
       Row left = images[t];
@@ -171,7 +173,7 @@ class DecaySearch {
         for (std::size_t i = 0; i < size_; ++i) share += lasting_.rows[k][i] * images[t][i];
         for (std::size_t i = 0; i < size_; ++i) left[i] -= share * columns_[k][i];
       }
-      const double unseen = extent(left) / least + 0x1p-20 * extent(columns_[t]);
+      const double unseen = extent(left) / least + 0x1p-20 * widest;
       const double grown =
           enlarged(2 * extent(columns_[t]) + decay.most * unseen * period / rest * period / rest);
       seen += grown * (abs_sum(lasting_.rows[t]) + lasting_.error);
