@@ -6,7 +6,9 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <oracle/tagged_shapes.h>
 #include <testing/six_sheets.h>
+#include <testing/tagged.h>
 #include <testing/twins.h>
 
 namespace snug::inspect_test {
