@@ -2,12 +2,12 @@
 
 #include <meshoptimizer.h>
 #include <snug/distance.h>
+#include <snug/inspect.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace snug::command {
@@ -74,22 +74,13 @@ Tessellation part_of(const Tessellation& fine, const std::vector<unsigned int>& 
   return part;
 }
 
-// How many triangles have the same edge, at most. Where a waist closes, meshoptimizer may bring two edges together.
-std::size_t most_at_an_edge(const Tessellation& mesh) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    for (const auto& [v, w] : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)})
-      edges.emplace_back(v, w);
-  }
-  std::sort(edges.begin(), edges.end());
-  std::size_t most = 0;
-  for (auto same = edges.begin(); same != edges.end();) {
-    const auto next = std::find_if(same, edges.end(), [&](const auto& edge) { return edge != *same; });
-    most = std::max(most, static_cast<std::size_t>(next - same));
-    same = next;
-  }
-  return most;
+// Edges with three triangles or more. Where a waist closes, meshoptimizer may bring two edges together.
+std::size_t many_sided_edges(const Tessellation& mesh) {
+  ControlMesh facets;
+  facets.points = mesh.positions;
+  for (const auto& [a, b, c] : mesh.triangles)
+    facets.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+  return count_elements(facets, Scheme::flat).many_sided_edges;
 }
 
 }  // namespace
@@ -103,12 +94,12 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Run&
   best.owners.clear();
   if (best.outcome != Outcome::complete) return best;
 
-  const std::size_t sheets = most_at_an_edge(best);
-  // Keeps it if it has fewer triangles and is near enough. Is it not farther than the tolerance, as far as known, and has no
-  // edge more triangles than before?
+  const std::size_t many_sided = many_sided_edges(best);
+  // Keeps it if it has fewer triangles and is near enough. Is it not farther than the tolerance, as far as known, and are no
+  // more edges many-sided than before?
   const auto consider = [&](Tessellation mesh) {
     if (mesh.triangles.size() >= best.triangles.size()) return true;
-    if (mesh.triangles.empty() || most_at_an_edge(mesh) > sheets) return false;
+    if (mesh.triangles.empty() || many_sided_edges(mesh) > many_sided) return false;
     std::vector<Triangle> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) {

@@ -88,18 +88,21 @@ TEST(tessellate, coarsens_below_the_number_of_faces) {
   const TemporaryFolder folder;
   const std::string bust = model("bust.obj");
   const std::string file = folder.file("bust.stl");
-  const std::string error = testing::fewer(4) == 4 ? "3%" : "10%";
-  const auto json = answer({bust, "--error", error, "--coarsen", "-o", file});
-  EXPECT_LT(json["triangles"], 400) << "bust has 1398 faces";
-  const auto judged =
-      nlohmann::json::parse(run_snug({"deviation", bust, file, "--threshold", error, "--json"}).out);
-  EXPECT_EQ(judged["verdict"], "within");
-  ReadOptions reading;
-  reading.weld = [](double) { return 0.0; };
-  const ControlMesh mesh = read_mesh(file, reading);
-  EXPECT_EQ(mesh.face_count(), json["triangles"]);
-  const Topology topology(mesh);
-  for (std::size_t e = 0; e < topology.edge_count(); ++e) EXPECT_FALSE(topology.ends_fans(EdgeId(e)));
+  // At 10 % the waist closes. Sanitizers make 3 % too long.
+  const bool whole = testing::fewer(4) == 4;
+  for (const char* const error : whole ? std::vector{"3%", "10%"} : std::vector{"10%"}) {
+    const auto json = answer({bust, "--error", error, "--coarsen", "-o", file});
+    EXPECT_LT(json["triangles"], 400) << "bust has 1398 faces";
+    const auto judged =
+        nlohmann::json::parse(run_snug({"deviation", bust, file, "--threshold", error, "--json"}).out);
+    EXPECT_EQ(judged["verdict"], "within");
+    ReadOptions reading;
+    reading.weld = [](double) { return 0.0; };
+    const ControlMesh mesh = read_mesh(file, reading);
+    EXPECT_EQ(mesh.face_count(), json["triangles"]);
+    const Topology topology(mesh);
+    for (std::size_t e = 0; e < topology.edge_count(); ++e) EXPECT_FALSE(topology.ends_fans(EdgeId(e)));
+  }
   expect_refused({bust, "--coarsen", "--max-edge", "1%", "-o", folder.file("a.ply")}, 2,
                  "--coarsen goes with --error");
   expect_refused({bust, "--coarsen", "--error", "1%", "--max-angle", "9", "-o", folder.file("a.ply")}, 2,
