@@ -17,6 +17,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <set>
 
 namespace snug::star_test {
 namespace {
@@ -45,6 +46,16 @@ oracle::TaggedMesh disc(std::uint32_t n, double turns, const std::function<doubl
   return mesh;
 }
 
+std::vector<Patch> patches_of(const LimitSurface& surface, const LevelStar& star) {
+  std::vector<Patch> patches;
+  for (const auto& sector : star.sectors) {
+    patches.push_back(surface.patch(sector.piece.patch));
+    const PiecePath& path = sector.piece.path;
+    for (unsigned k = 0; k < path.level(); ++k) patches.back() = split(patches.back(), path.digit(k));
+  }
+  return patches;
+}
+
 // The star of vertex 0 of a surface after some levels.
 struct CentreStar {
   std::vector<Patch> patches;
@@ -58,13 +69,7 @@ CentreStar star_at_centre(const LimitSurface& surface, unsigned level) {
   const LevelStar star = complex.star(complex.vertices(piece)[0], level);
   EXPECT_TRUE(star.fan);
   CentreStar result;
-  for (const auto& sector : star.sectors) {
-    result.patches.push_back(surface.patch(sector.piece.patch));
-    const PiecePath& path = sector.piece.path;
-    for (unsigned k = 0; k < path.level(); ++k) {
-      result.patches.back() = split(result.patches.back(), path.digit(k));
-    }
-  }
+  result.patches = patches_of(surface, star);
   for (std::size_t s = 0; s < result.patches.size(); ++s) {
     result.sectors.push_back({&result.patches[s], star.sectors[s].centre});
   }
@@ -600,6 +605,64 @@ TEST(star, at_a_boundary_over_a_wide_angle_is_injective) {
       }
     }
   }
+}
+
+// Do normals near the centre of a star in the plane point both ways?
+bool turns_over(const std::vector<Patch>& patches, const LevelStar& star) {
+  bool up = false, down = false;
+  for (std::size_t s = 0; s < patches.size(); ++s) {
+    const std::size_t centre = star.sectors[s].centre;
+    for (int level = 0; level <= 16; ++level) {
+      for (int i = 0; i <= 4; ++i) {
+        std::array<double, 3> at{};
+        const double away = std::ldexp(1, -level);
+        at[centre] = 1 - away;
+        at[(centre + 1) % 3] = away * i / 4;
+        at[(centre + 2) % 3] = away * (4 - i) / 4;
+        const LimitFrame frame = limit_frame(patches[s], {at[1], at[2]});
+        if (frame.normal) (frame.normal->z > 0 ? up : down) = true;
+      }
+    }
+  }
+  return up && down;
+}
+
+// Triangles of Midedge and other faces of dual schemes: the slowest parts at their middles differ from level to level.
+TEST(star, of_a_dual_scheme_that_turns_over_in_the_limit_is_never_injective) {
+  std::mt19937_64 random(8);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  int injective = 0, turned = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    auto mesh = disc(3 + static_cast<std::uint32_t>(random() % 4), 1, [](double, double) { return 0.0; });
+    const double flat = std::array{1.0, 0.3, 0.1}[random() % 3],
+                 amount = std::array{0.3, 0.8, 2.0}[random() % 3];
+    for (auto& p : mesh.points) {
+      p[0] += amount * unit();
+      p[1] = flat * (p[1] + amount * unit()) + 0.5 * p[0];
+    }
+    const LimitSurface surface = surface_of(mesh, trial % 4 == 0 ? Scheme::doo_sabin : Scheme::midedge);
+    const LevelComplex complex(surface);
+    const unsigned level = complex.first_level();
+    std::set<LevelVertex> seen;
+    for (const PieceName& piece : complex.pieces()) {
+      for (const LevelVertex& vertex : complex.vertices(piece)) {
+        if (seen.size() == 6 || !seen.insert(vertex).second) continue;
+        const LevelStar star = complex.star(vertex, level);
+        if (!star.fan) continue;
+        const std::vector<Patch> patches = patches_of(surface, star);
+        std::vector<StarSector> sectors;
+        for (std::size_t s = 0; s < patches.size(); ++s)
+          sectors.push_back({&patches[s], star.sectors[s].centre});
+        const bool proved = certainly_injective(sectors, star.closed);
+        const bool over = turns_over(patches, star);
+        EXPECT_FALSE(proved && over) << "trial " << trial;
+        injective += proved ? 1 : 0;
+        turned += over ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(injective, 300);
+  EXPECT_GT(turned, 300);
 }
 
 TEST(star, that_is_a_point_or_a_line_is_never_injective) {
