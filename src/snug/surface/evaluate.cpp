@@ -45,14 +45,19 @@ PatchId first_patch(const LimitSurface& surface, const Place& at) {
 
 bool on_one_patch(const Place& a, const Place& b) { return a.owner == b.owner && a.corner == b.corner; }
 
-// Numbers of points such that those of one face, or quad, follow each other. Empty where most do already, or
-// where there are so few that hardly two lie on one face.
+// Numbers of points such that those of one face, or quad, follow each other. Empty where most do already, by some
+// pairs that are looked at, or where there are so few that hardly two lie on one face.
 std::vector<std::size_t> grouped_by_patch(const LimitSurface& surface, std::span<const Place> at) {
+  if (at.size() < 2) return {};
+  // Spread by the golden ratio, which no period of the places follows.
+  const std::size_t pairs = std::min<std::size_t>(at.size() - 1, 1024);
   std::size_t changes = 0;
-  for (std::size_t i = 1; i < at.size(); ++i) {
-    changes += !on_one_patch(at[i], at[i - 1]);
+  for (std::size_t k = 0; k < pairs; ++k) {
+    const double part = std::fmod(0.618033988749895 * static_cast<double>(k), 1);
+    const auto i = static_cast<std::size_t>(part * static_cast<double>(at.size() - 1));
+    changes += !on_one_patch(at[i], at[i + 1]);
   }
-  if (changes < at.size() / 8 || at.size() < surface.patch_count() / 8) return {};
+  if (8 * changes <= pairs || at.size() < surface.patch_count() / 8) return {};
   std::vector<std::size_t> begins(surface.patch_count() + 1, 0), order(at.size());
   for (const Place& a : at) ++begins[first_patch(surface, a).index() + 1];
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
