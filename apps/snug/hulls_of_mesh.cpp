@@ -31,7 +31,8 @@ const char* explained(HullFault fault) {
     case HullFault::too_few_triangles:
       return "the budget allows too few triangles; give a larger --max-splits or --error";
     case HullFault::through_itself:
-      return "the surface goes through itself there, so that it has not both hulls; snug envelope wraps it";
+      return "the surface goes through itself there, and the hull failed; snug envelope makes a mesh around "
+             "it";
     case HullFault::not_around:
       break;
   }

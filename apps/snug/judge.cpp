@@ -97,8 +97,9 @@ class Judge {
       answer.word = name_of(found.outcome);
       answer.text = found.outcome != Outcome::complete
                         ? fmt::format("none, {}", name_of(found.problems[0].fault))
-                        : fmt::format("{} triangles inside and {} outside", found.inner->triangles.size(),
-                                      found.outer->triangles.size());
+                        : fmt::format("{} triangles {} and {} {}", found.inner->triangles.size(),
+                                      found.closed ? "inside" : "behind", found.outer->triangles.size(),
+                                      found.closed ? "outside" : "in front");
     });
     ask("envelope", [&](const Run& run, Answer& answer) {
       const Envelope found = envelope(surface_, {.error = error()}, run);
@@ -152,8 +153,9 @@ class Judge {
     const std::string vertex = meets ? "" : vertex_at(surface_, *found.pairs[0].points[0].at);
     if (!vertex.empty()) text += " (" + vertex + ")";
     if (found.pairs.size() > 1) {
-      text += fmt::format(", and at {} more places{}", found.pairs.size() - 1,
-                          found.pairs.size() == SelfContact::max_pairs ? " at least" : "");
+      text += fmt::format(", and at {}{} more places",
+                          found.pairs.size() == SelfContact::max_pairs ? "at least " : "",
+                          found.pairs.size() - 1);
     }
     findings_.push_back({meets ? "meets-itself" : "self-contact-undecided", text,
                          meets ? "snug envelope makes a closed mesh around it" : ""});
@@ -266,8 +268,11 @@ ExitStatus run(const Options& options) {
   const std::vector<std::string> lines = lines_of(summary, mesh, options.mesh, options);
   for (const std::string& line : lines) report.text(line);
   for (const Answer& answer : answers) {
-    report.text(fmt::format("{:12}  {}, in {:.2g} s", answer.question, answer.text, answer.seconds));
+    report.text(fmt::format("{:12}  {}, in {:.{}f} s", answer.question, answer.text, answer.seconds,
+                            answer.seconds < 1 ? 2 : 1));
   }
+  // The lines say already why it is refused.
+  std::erase_if(findings, [](const Finding& found) { return found.kind == std::string_view("refused"); });
   for (std::size_t i = 0; i < std::min(findings.size(), max_findings); ++i) {
     const Finding& found = findings[i];
     report.text("note: " + found.text + (found.mends.empty() ? "" : "; " + found.mends));

@@ -27,12 +27,12 @@ struct MeshSummary {
 /// Errors:    UsageError for curves and for options that do not fit.
 [[nodiscard]] MeshSummary summary_of(const ControlMesh& mesh, const std::string& path,
                                      const CommonOptions& options);
-/// What it is taken to be, and the counts, as lines for people; a refusal, if there is one.
+/// Lines for people: how the mesh is read, its counts, and why it is refused, if it is.
 [[nodiscard]] std::vector<std::string> lines_of(const MeshSummary& summary, const ControlMesh& mesh,
                                                 const std::string& path, const CommonOptions& options);
-/// A sentence about `twice`, without a full stop.
+/// A sentence about MeshSummary::twice, without a full stop.
 [[nodiscard]] std::string overlap_sentence(const MeshSummary& summary);
-/// The vertex of the mesh that a place is at or hardly beside, such as "vertex 7 of 5 faces, 2 creases"; empty elsewhere, and in a
+/// The vertex of the mesh at a place, or very near to it, such as "vertex 7 of 5 faces, 2 creases"; empty elsewhere, and in a
 /// dual scheme.
 [[nodiscard]] std::string vertex_at(const Surface& surface, const Place& place);
 

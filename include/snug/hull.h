@@ -35,7 +35,7 @@ enum class HullFault : std::uint8_t {
   meets_other,        ///< the two hulls could not be separated
   not_around,         ///< the outer hull does not enclose the surface, or the surface the inner one
   too_few_triangles,  ///< the budget is spent, and the hull is not as near as requested
-  through_itself,     ///< the surface goes through itself, proved as by self_contact(): it has not both hulls
+  through_itself,     ///< a hull failed, and the surface goes through itself: proved, as by self_contact()
 };
 [[nodiscard]] SNUG_API const char* name_of(HullFault fault);
 
@@ -63,10 +63,9 @@ struct Hulls {
 ///            of its own hull except in shared vertices and edges; hull and surface are nowhere farther than
 ///            Hull::gap <= error from each other; the solid of a closed surface lies inside the outer hull
 ///            and contains the inner one. Everything holds for the returned doubles and, except for a gap below
-///            the error, was proved from them, not from how they were found. A surface that goes through itself has not both
-///            hulls, which is said, where it can be proved, once the first of both fails, or one alone for some rounds;
-///            envelope() is for it. One that touches itself, or whose sheets leave no room between them, is usually not
-///            `complete`.
+///            the error, was proved from them, not from how they were found. Where a surface goes through itself hulls
+///            fail, and that it does is said if it is proved (through_itself); envelope() is for it. One that touches
+///            itself, or whose sheets leave no room between them, is usually not `complete`.
 /// Budget:    1,000,000 triangles of a hull; 2 to 3 kB each; if hulls fail, up to 10 kB each and 100 MB more.
 /// Errors:    InputError: (value) for an error that is not finite and positive, above half the size, or
 ///            too small for doubles or floats; (refused), naming two faces, if these run along an edge in the

@@ -61,7 +61,7 @@ struct MeshCounts {
   std::size_t extraordinary = 0;
   std::size_t creases = 0;  ///< tags on edges of faces
   std::size_t needles =
-      0;  ///< faces a hundred times as long as wide or more, but for those of no area: in double precision
+      0;                ///< faces of some area narrower than a hundredth of their longest side, in doubles
   bool closed = false;  ///< it has faces, and along every edge as many run one way as the other
 };
 /// Cost:      linear, times the logarithm of the largest valence.
@@ -82,7 +82,7 @@ struct Coincidences {
 };
 /// Finds them; nothing is changed. Meshes with faces that name vertices which are not there, or with coordinates that are
 /// not finite, have none.
-/// Cost:      linear; on meshes with a boundary that of weld() on its vertices.
+/// Cost:      linear; on meshes with a boundary that of weld() on its vertices, and of their tree.
 [[nodiscard]] SNUG_API Coincidences coincidences(const ControlMesh& mesh);
 
 /// Most faces whose distance from the limit surface a note measures, which takes 0.2 seconds.

@@ -98,7 +98,7 @@ TEST(hull_problems, of_a_component_on_the_wrong_side_are_found) {
   }
 }
 
-// What goes through itself has not both hulls, and that is said at once; what only touches itself may have an inner one.
+// Where a surface goes through itself a hull fails, and that is said at once; one that only touches itself may have an inner hull.
 TEST(hull_problems, of_a_surface_through_itself_are_where_it_goes_through) {
   const auto two = [](const std::array<double, 3>& apart, Scheme scheme) {
     const TaggedMesh mesh = both(meshes::cube(), moved(meshes::cube(), 1, apart));

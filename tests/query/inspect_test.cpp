@@ -202,6 +202,10 @@ TEST(coincidences, of_vertices_on_edges) {
   EXPECT_EQ(coincidences(sheets(0)).on_edges, 1u);
   EXPECT_EQ(coincidences(sheets(-1e-6)).on_edges, 1u);
   EXPECT_EQ(coincidences(sheets(-1e-3)).on_edges, 0u);
+  // Hardly beside an end of the edge it is near that vertex, and not on the edge.
+  ControlMesh beside_end = sheets(0);
+  beside_end.points[5] = {1e-7, 0, 0};
+  EXPECT_EQ(coincidences(beside_end).on_edges, 0u);
   const MeshCounts counts = count_elements(sheets(0), Scheme::catmark);
   EXPECT_EQ(counts.borders, 2u);
   EXPECT_EQ(counts.boundary_edges, 10u);

@@ -220,7 +220,7 @@ bool goes_through(const Surface& surface, const SelfContactPair& pair) {
   return !pair.touching && a && b && length(cross(a->direction, b->direction)) > least_sine;
 }
 
-// Where a surface is proved to meet itself, and goes through.
+// The places where a surface is proved to go through itself.
 std::vector<HullProblem> contacts_of(const Surface& surface, const LimitSurface& limit, bool inner,
                                      const Run& run) {
   const WorkMonitor monitor = stop_only(run);

@@ -232,6 +232,7 @@ MeshCounts count_elements(const ControlMesh& mesh, Scheme scheme) {
   result.boxes_meet = any_meet(boxes);
   std::vector<std::uint32_t> valence(mesh.vertex_count(), 0);
   std::vector<bool> boundary(mesh.vertex_count(), false);
+  DisjointSets borders(mesh.vertex_count());
   result.closed = groups.edge_count() > 0;
   for (std::size_t e = 0; e < groups.edge_count(); ++e) {
     const auto sides = groups.of_edge(EdgeId(e));
@@ -246,6 +247,7 @@ MeshCounts count_elements(const ControlMesh& mesh, Scheme scheme) {
     if (members == 1) {
       ++result.boundary_edges;
       boundary[a.index()] = boundary[b.index()] = true;
+      borders.join(a.value(), b.value());
     }
   }
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -259,12 +261,6 @@ MeshCounts count_elements(const ControlMesh& mesh, Scheme scheme) {
   for (std::size_t f = 0; traits.dual && f < mesh.face_count(); ++f)
     result.extraordinary += mesh.face(FaceId(f)).size() != traits.regular_valence;
   result.creases = mesh.tags.creases.size() - loose_creases(mesh).size();
-  DisjointSets borders(mesh.vertex_count());
-  for (std::size_t e = 0; e < groups.edge_count(); ++e) {
-    if (groups.of_edge(EdgeId(e)).size() != 1) continue;
-    const auto [a, b] = ends_of(faces, groups, EdgeId(e));
-    borders.join(a.value(), b.value());
-  }
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
     result.borders += boundary[v] && borders.least(static_cast<std::uint32_t>(v)) == v;
   for (std::size_t f = 0; f < faces.face_count(); ++f)

@@ -192,7 +192,7 @@ class SelfSearch {
     }
   }
 
-  // What stands in control points.
+  // Contacts of pieces that are known from their control points.
   void add(const std::vector<PieceContact>& contacts, Found::What what) {
     for (const auto& [pieces, at] : contacts) keep({what, {pieces[0], pieces[1]}, at});
   }

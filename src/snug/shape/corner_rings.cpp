@@ -116,7 +116,7 @@ void CornerRings::add_up(std::vector<double> parts) {
   const RingDecay& shrinks = *decay_;
   const auto period = static_cast<double>(shrinks.period);
   const double rest = 1 - shrinks.factor, grown = decay_->ratio.lower - 1;
-  // What the levels are scaled by differs from the eigenvalue's power.
+  // The levels are scaled by a number that differs from the eigenvalue's power.
   for (double& part : parts) part *= 1 + 4 * static_cast<double>(parts.size()) * least_off_;
   const double end = shrinks.most * parts.back() * period;
   Sums sums{enlarged(end / rest), enlarged(end * period / (rest * rest)), 0};

@@ -28,7 +28,7 @@ std::vector<Row> dual_columns(const std::vector<Row>& rows) {
   };
   std::vector<Row> columns;
   for (std::size_t t = 0; t < rows.size(); ++t) {
-    // What of row t is across all others.
+    // The part of row t across all others.
     Row across = rows[t];
     std::vector<Row> others;
     for (std::size_t k = 0; k < rows.size(); ++k) {
