@@ -8,6 +8,9 @@
 namespace snug::command {
 namespace {
 
+// Of those printed for people.
+constexpr std::size_t max_area_lines = 20, max_area_corners = 8;
+
 void write_interval(JsonWriter& json, const char* name, const Interval& interval) {
   json.key(name).begin_array().value(interval.lower).value(interval.upper).end_array();
 }
@@ -60,6 +63,13 @@ void write_curve(JsonWriter& json, const IntersectionCurve& curve) {
   json.end_array().end_object();
 }
 
+void write_area(JsonWriter& json, const ContactArea& area) {
+  json.begin_object().field("region", area.region).field("a", area.faces[0]).field("b", area.faces[1]);
+  json.field("error", area.error).key("points").begin_array();
+  for (const Point3& p : area.points) json.value(p);
+  json.end_array().end_object();
+}
+
 std::string number_of(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -91,6 +101,20 @@ std::string curve_line(const IntersectionCurve& curve, std::size_t number) {
                                             curve.boxes.size()));
 }
 
+std::string area_line(const ContactArea& area, std::size_t number) {
+  const std::size_t count = area.points.size();
+  std::string text = fmt::format("area {}: {}, face {} of A and face {} of B, region {}:", number,
+                                 count == 1   ? "a point"
+                                 : count == 2 ? "a segment"
+                                              : fmt::format("a polygon of {} corners", count),
+                                 area.faces[0], area.faces[1], area.region);
+  for (std::size_t i = 0; i < count && i < max_area_corners; ++i) {
+    const Point3& p = area.points[i];
+    text += fmt::format("{} ({:.6g} {:.6g} {:.6g})", i == 0 ? "" : ",", p.x, p.y, p.z);
+  }
+  return text + (count > max_area_corners ? ", ..." : "");
+}
+
 }  // namespace
 
 void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found) {
@@ -99,6 +123,8 @@ void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found)
   for (const ContactRegion& region : found.regions) write_region(json, sides, region);
   json.end_array().key("curves").begin_array();
   for (const IntersectionCurve& curve : found.curves) write_curve(json, curve);
+  json.end_array().key("areas").begin_array();
+  for (const ContactArea& area : found.areas) write_area(json, area);
   json.end_array().key("open").begin_array();
   for (const OpenBox& open : found.open) {
     json.begin_object();
@@ -111,13 +137,18 @@ void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found)
 
 std::vector<std::string> contact_lines(const Sides& sides, const Contacts& found) {
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("{}, {}, {}", number_of(found.regions.size(), "region", "regions"),
+  lines.push_back(fmt::format("{}, {}, {}, {}", number_of(found.regions.size(), "region", "regions"),
                               number_of(found.curves.size(), "intersection curve", "intersection curves"),
+                              number_of(found.areas.size(), "area", "areas"),
                               number_of(found.open.size(), "open box", "open boxes")));
   for (std::size_t i = 0; i < found.regions.size(); ++i) {
     lines.push_back(region_line(sides, found.regions[i], i));
   }
   for (std::size_t i = 0; i < found.curves.size(); ++i) lines.push_back(curve_line(found.curves[i], i));
+  for (std::size_t i = 0; i < found.areas.size() && i < max_area_lines; ++i)
+    lines.push_back(area_line(found.areas[i], i));
+  if (found.areas.size() > max_area_lines)
+    lines.push_back(fmt::format("{} more areas: see --json", found.areas.size() - max_area_lines));
   if (!found.exhaustive) {
     lines.emplace_back("not complete: the budget ended; give a larger --max-splits or a smaller --tolerance");
   } else if (found.outcome != Outcome::complete) {

@@ -28,18 +28,15 @@ struct PatchContact {
 
 /// A connected part of a contact.
 ///
-/// Two pairs of pieces are neighbours if, on A and on B, their patches are the same or share a corner, and the boxes
-/// around their pieces intersect; a region is a connected component of this relation. A connected set of contacts is in
-/// one region; two sets that are closer to each other than the size of pieces may be in one region, too.
+/// Two pairs of pieces are neighbours if on A and on B their patches are the same or share a corner, and their boxes intersect; a region
+/// is a connected component. A connected set of contacts is in one region; sets closer than the size of pieces may be in one, too.
 struct ContactRegion {
-  /// `intersecting`: proved, a curve runs through the region or a crossing was found; `within`: the witnesses are at
+  /// `intersecting`: proved, a curve or an area is in the region or a crossing was found; `within`: the witnesses are at
   /// most `within` apart; `undecided`: there may be no contact here.
   Verdict verdict = Verdict::undecided;
-  std::vector<PatchContact> contacts;  ///< in the order of patches
-  std::array<std::vector<std::uint32_t>, 2>
-      owners;  ///< faces of A and of B (vertices in a dual scheme), sorted
-  /// Contains all points of A and of B in the region that are at most `within` apart.
-  Box3 box;
+  std::vector<PatchContact> contacts;                ///< in the order of patches
+  std::array<std::vector<std::uint32_t>, 2> owners;  ///< faces (vertices in a dual scheme), sorted
+  Box3 box;               ///< contains all points of A and of B in the region at most `within` apart
   Interval distance;      ///< contains the least distance between A and B in the region
   WitnessPoints witness;  ///< the two closest points found, with `at` set; normal_at() gives the normals
 };
@@ -57,17 +54,23 @@ struct IntersectionCurve {
   std::vector<Point3> points;   ///< a closed curve's first point is not repeated
   std::vector<CurveBox> boxes;  ///< box i is between points i and i + 1; if closed, the last leads back
   bool closed = false;
-  /// Every box contains one arc, and consecutive arcs are proved to meet.
-  bool proved = false;
-  /// For an open curve: whether its first and its last point certainly lie on the border of a surface. Where false,
-  /// the curve may continue in an open box.
+  bool proved = false;  ///< every box contains one arc, and consecutive arcs are proved to meet
+  /// Of an open curve: do its first and its last point certainly lie on a border? If not, it may continue in an open box or at an area.
   std::array<bool, 2> at_border{};
   double error = 0;  ///< upper bound of the distance between polyline and curve, each from the other
   std::uint32_t region = 0;
 };
 
-/// A box in which A and B may intersect in an unresolved way: tangentially, in an area, or at a corner of patches. Where there
-/// are more than some 4,000, or than pairs of patches, neighbouring ones are one.
+/// What a facet of A and one of B (self_contact() says which are) that touch have in common, exactly for the doubles of meshes and poses.
+struct ContactArea {
+  std::vector<Point3> points;  ///< of a convex polygon, as the corners of A's face run; a segment; a point
+  double error = 0;  ///< upper bound, a coordinate, of how far they are from the exact ones; often 0
+  std::array<std::uint32_t, 2> faces{};
+  std::uint32_t region = 0;
+};
+
+/// A box in which A and B may intersect in an unresolved way: tangentially, in an area, or at a corner of patches. Where there are more
+/// than about 4,000, or one for each pair of patches in a region, neighbouring ones are one.
 struct OpenBox {
   Box3 box;
   std::array<PatchPlace, 2> patches;
@@ -75,12 +78,12 @@ struct OpenBox {
 };
 
 struct Contacts {
-  /// Not `complete` where pieces stayed coarser than requested.
-  Outcome outcome = Outcome::complete;
+  Outcome outcome = Outcome::complete;  ///< not `complete` where pieces stayed coarser than requested
   /// Do the lists below hold all contacts? False if the budget ran out before all pairs had been compared.
   bool exhaustive = false;
   std::vector<ContactRegion> regions;
   std::vector<IntersectionCurve> curves;
+  std::vector<ContactArea> areas;  ///< those of edges and corners only where they lie in no other one
   std::vector<OpenBox> open;
   SearchStats stats;           ///< of the search for regions
   std::uint64_t compared = 0;  ///< pairs of pieces compared for curves
@@ -88,10 +91,9 @@ struct Contacts {
 
 /// All contacts of two placed limit surfaces, and the curves in which they intersect.
 ///
-/// Guarantee: if `exhaustive`, any two points of A and B at most `within` apart lie on the two patches of a listed
-///            contact, and any common point lies in a box of a curve or in an open box. A curve that is `proved` and
-///            `closed` is one closed curve of the intersection. All of this holds for the given doubles, rounding
-///            included.
+/// Guarantee: if `exhaustive`, any two points of A and B at most `within` apart lie on the two patches of a listed contact, and any
+///            common point lies in a box of a curve, in an area or in an open box. A curve that is `proved` and `closed` is one
+///            closed curve of the intersection. All of this holds for the given doubles, rounding included.
 /// Budget:    200,000 pairs of pieces compared for regions, and as many again for curves; 300 bytes each.
 /// Errors:    InputError: (value) for `within` negative or not finite, and `error` not positive; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has a
 ///            limit surface. Interrupted.
@@ -113,9 +115,8 @@ enum class SelfVerdict : std::uint8_t {
 struct SelfContactOptions {
   /// > 0, in mesh units: points at most this far apart are near each other. Default: only contact is tested.
   std::optional<double> within{};
-  /// Only points farther apart along the surface than this count as near; points of different components always
-  /// do. At least twice `within`; if it is below pi/2 times that, a sphere of diameter `within` is near itself.
-  /// Default: 4 times `within`.
+  /// Only points farther apart along the surface than this count as near; points of different components always do. At least twice
+  /// `within`; if it is below pi/2 times that, a sphere of diameter `within` is near itself. Default: 4 times `within`.
   std::optional<double> radius{};
   unsigned levels = 10;  ///< most levels below the coarsest one at which stars are tested
 };
@@ -124,8 +125,8 @@ struct SelfContactOptions {
 struct SelfContactPair {
   SelfVerdict verdict = SelfVerdict::undecided;  ///< all but clear
   bool touching = false;  ///< of facets: in no point inside of both; of vertices that coincide
-  WitnessPoints points;   ///< on the two pieces in question; `at` is set
-  Interval distance;      ///< contains the distance of the two pieces; [0, 0] where they cross
+  WitnessPoints points;   ///< on the two pieces, or on both sides of a patch that turns over; `at` is set
+  Interval distance;      ///< contains the distance of the two pieces; [0, 0] where the surface meets itself
 };
 
 /// The answer to "does this surface meet itself?"
@@ -153,11 +154,10 @@ struct SelfContact {
 ///            creases, collapsed patches, what is not manifold) are `undecided`, never `clear`; so are smooth vertices
 ///            of boundaries and creases with many faces (docs/self_contact.md).
 /// Budget:    1,000,000 stars and pairs of pieces tested, about; 100 bytes each.
-/// Errors:    InputError: (value) for more than 20 levels, for `within` not positive and finite, and for a radius that
-///            is not finite, is below twice `within`, or is given without it; (refused) if
-///            no face has a limit surface; (unrepresentable) if a result does not fit a double. Interrupted.
-/// Cost:      about 1 to 4 ms per face (docs/self_contact.md). With `within` the same time again, plus time in
-///            proportion to the pieces that are near each other.
+/// Errors:    InputError: (value) for more than 20 levels, for `within` not positive and finite, and for a radius that is not finite, is
+///            below twice `within`, or is given without it; (refused) if no face has a limit surface; (unrepresentable) if a result
+///            does not fit a double. Interrupted.
+/// Cost:      about 1 to 4 ms per face (docs/self_contact.md). With `within` as long again, and longer by pieces near each other.
 /// Source:    derivations/self_contact.md.
 [[nodiscard]] SNUG_API SelfContact self_contact(const Surface& surface,
                                                 const SelfContactOptions& options = {}, const Run& run = {});

@@ -1,9 +1,11 @@
 // Contacts whose regions and curves are known: numbers, shapes, options, and that threads change nothing.
 
 #include <snug/contacts.h>
+#include <snug/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
+#include <snug/geometry/point_triangle.h>
 #include <support/point.h>
 #include <testing/tagged.h>
 
@@ -65,13 +67,25 @@ bool holds(const Box3& box, const Point3& p) {
   return p.x >= box.lower.x - e && p.x <= box.upper.x + e && p.y >= box.lower.y - e &&
          p.y <= box.upper.y + e && p.z >= box.lower.z - e && p.z <= box.upper.z + e;
 }
+// Near a point, a segment, or a convex polygon as a fan?
+bool holds(const ContactArea& area, const Point3& p) {
+  const std::size_t n = area.points.size();
+  for (std::size_t k = 0; k == 0 || k + 2 < n; ++k) {
+    const Triangle t{area.points[0], area.points[std::min(k + 1, n - 1)],
+                     area.points[std::min(k + 2, n - 1)]};
+    if (distance_between(p, t, 1).lower <= 1e-11) return true;
+  }
+  return false;
+}
 bool listed(const Contacts& found, const Point3& p) {
   for (const IntersectionCurve& curve : found.curves) {
     if (std::any_of(curve.boxes.begin(), curve.boxes.end(),
                     [&](const CurveBox& b) { return holds(b.box, p); }))
       return true;
   }
-  return std::any_of(found.open.begin(), found.open.end(), [&](const OpenBox& b) { return holds(b.box, p); });
+  return std::any_of(found.areas.begin(), found.areas.end(),
+                     [&](const ContactArea& a) { return holds(a, p); }) ||
+         std::any_of(found.open.begin(), found.open.end(), [&](const OpenBox& b) { return holds(b.box, p); });
 }
 
 TEST(contacts, of_surfaces_apart_or_inside_each_other_there_are_none) {
@@ -104,16 +118,50 @@ TEST(contacts, of_a_ball_and_a_plane_are_one_closed_curve) {
   }
 }
 
-// Two cubes on each other: a square, in boxes of which there are not too many and that leave nothing of it out.
-TEST(contacts, in_an_area_are_in_few_open_boxes) {
-  const Surface cube(testing::control_mesh(oracle::meshes::cube()), {.scheme = Scheme::bilinear});
-  const Contacts found = contacts(cube, cube.at(Motion::translation({0.3, 0.2, 1})));
-  EXPECT_GT(found.open.size(), 1000u);
-  EXPECT_LE(found.open.size(), 5000u);
-  for (double x = 0.3; x <= 1; x += 0.07) {
-    for (double y = 0.2; y <= 1; y += 0.08) EXPECT_TRUE(listed(found, {x, y, 1})) << x << ' ' << y;
+// Two cubes on each other: a rectangle, whatever the scheme.
+TEST(contacts, of_two_boxes_on_each_other_are_one_polygon) {
+  const oracle::TaggedMesh mesh = meshes::cube();
+  const Surface bilinear(testing::control_mesh(mesh), {.scheme = Scheme::bilinear}), sharp = box({1, 1, 1});
+  for (const Surface& cube : {bilinear, sharp}) {
+    for (const std::optional<double> within : {std::optional<double>{}, std::optional(0.0)}) {
+      const Contacts found = contacts(cube, cube.at(Motion::translation({0.3, 0.2, 1})), {.within = within});
+      EXPECT_TRUE(found.exhaustive && found.outcome == Outcome::complete);
+      EXPECT_TRUE(found.curves.empty() && found.open.empty());
+      EXPECT_LT(found.stats.splits + found.compared, 1000u);
+      ASSERT_EQ(found.regions.size(), 1u);
+      EXPECT_EQ(found.regions[0].verdict, Verdict::intersecting);
+      ASSERT_EQ(found.areas.size(), 1u);
+      EXPECT_EQ(found.areas[0].error, 0);
+      ASSERT_EQ(found.areas[0].points.size(), 4u);
+      for (const Point3& p : found.areas[0].points)
+        EXPECT_TRUE((p.x == 0.3 || p.x == 1) && (p.y == 0.2 || p.y == 1) && p.z == 1);
+    }
   }
-  for (const OpenBox& open : found.open) EXPECT_LT(open.region, found.regions.size());
+}
+
+// Copies of a curved surface, and sheets of different squares in one plane: each piece is looked at about once.
+TEST(contacts, in_curved_areas_end_soon_in_boxes) {
+  const Surface a = ball(), wide = plane(1, 5), narrow = plane(0.8, 7);
+  const Motion pose = Motion::rotation({1, 2, 3}, 0.5);
+  const Contacts balls = contacts(a.at(pose), a.at(pose), {.within = 0.0}), sheets = contacts(wide, narrow);
+  for (const Contacts* const found : {&balls, &sheets}) {
+    EXPECT_TRUE(found->exhaustive);
+    EXPECT_EQ(found->outcome, Outcome::at_rounding);
+    EXPECT_LE(found->open.size(), 5000u);
+    EXPECT_EQ(found->regions.size(), 1u);
+  }
+  EXPECT_LT(balls.compared, 100'000u);
+  EXPECT_LT(sheets.compared, 2000u);  // of pieces that are split no further
+  for (std::uint32_t face = 0; face < 6; ++face) {
+    for (double u = 0; u <= 1; u += 0.11) {
+      for (double v = 0; v <= 1; v += 0.13)
+        EXPECT_TRUE(listed(balls, pose.apply(evaluate(a, {face, 0, u, v}).point)));
+    }
+  }
+  for (std::uint32_t face = 0; face < 49; ++face) {
+    for (double u = 0; u <= 1; u += 0.25)
+      EXPECT_TRUE(listed(sheets, evaluate(narrow, {face, 0, u, 0.7}).point));
+  }
 }
 
 // Edges of pieces of the ball lie in the plane.
@@ -201,7 +249,7 @@ TEST(contacts, of_two_sharp_boxes_are_the_polygon_that_is_known) {
   }
 }
 
-TEST(contacts, of_faces_in_each_other_are_in_open_boxes) {
+TEST(contacts, of_faces_in_each_other_are_listed) {
   const Surface a = box({1, 1, 1}), b = box({1, 1, 1});
   const Contacts found =
       contacts(a, b.at(Motion::translation({0.25, 0.125, 1})), {.within = 0.0, .error = 0.05});

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/limit_twin.h>
+#include <snug/geometry/point_triangle.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <support/point.h>
@@ -65,6 +66,7 @@ class Checks {
     counts["with proved closed curves"] +=
         std::any_of(found.curves.begin(), found.curves.end(),
                     [](const IntersectionCurve& c) { return c.closed && c.proved; });
+    counts["with areas"] += !found.areas.empty();
     counts["with open boxes"] += !found.open.empty();
     counts["not complete"] += !found.exhaustive;
     counts["coarser than asked"] += found.outcome != Outcome::complete;
@@ -151,8 +153,19 @@ class Checks {
         if (holds(b.box, p, slack)) return true;
       }
     }
-    return std::any_of(found.open.begin(), found.open.end(),
+    return std::any_of(found.areas.begin(), found.areas.end(),
+                       [&](const ContactArea& area) { return holds(area, p, slack); }) ||
+           std::any_of(found.open.begin(), found.open.end(),
                        [&](const OpenBox& b) { return holds(b.box, p, slack); });
+  }
+  [[nodiscard]] static bool holds(const ContactArea& area, const Point3& p, double slack) {
+    const std::size_t n = area.points.size();
+    for (std::size_t k = 0; k == 0 || k + 2 < n; ++k) {
+      const Triangle t{area.points[0], area.points[std::min(k + 1, n - 1)],
+                       area.points[std::min(k + 2, n - 1)]};
+      if (distance_between(p, t, 1).lower <= slack) return true;
+    }
+    return false;
   }
 
   // Regions and curves are consistent.
@@ -184,6 +197,10 @@ class Checks {
       }
     }
     for (const OpenBox& open : found.open) EXPECT_LT(open.region, found.regions.size());
+    for (const ContactArea& area : found.areas) {
+      ASSERT_LT(area.region, found.regions.size());
+      EXPECT_EQ(found.regions[area.region].verdict, Verdict::intersecting);
+    }
   }
 
   // By the twin: points of curves, and the middles between them, are as near to both surfaces as is said.

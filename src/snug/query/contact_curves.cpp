@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -21,6 +23,11 @@ constexpr double smallest_open = 0x1p-5;
 constexpr std::size_t max_late = 1024;
 // Pieces that bend less than this share of their size count as flat.
 constexpr double min_bend = 0x1p-12;
+// Pieces that lie in the other surface are looked for where there are so many pairs, at first, or once there are so many times more than
+// a split before, which curves make two. Later on it goes on.
+constexpr std::size_t min_area_pairs = 256, first_area_pairs = 2048, area_growth = 3;
+// Of those with some samples on the other surface, so many times the precision are small enough.
+constexpr double largest_outline = 16;
 // Error of a parameter of a root patch that is computed from that of a piece.
 constexpr double path_error = 0x1p-48;
 
@@ -116,6 +123,155 @@ class Cutter {
   std::array<const LimitSurface*, 2> surfaces_;
   std::array<PlacedFrame, 2> frames_;
   double precision_;
+};
+
+// ---- Pieces that lie in the other surface ----
+
+// Corners, middles of edges, the centre: no four are on one line.
+constexpr std::array<TriangleParameter, 7> samples{
+    {{1.0 / 3, 1.0 / 3}, {0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}}};
+constexpr std::size_t some_samples = 4;
+constexpr unsigned max_foot_steps = 32;
+
+// Finds pieces of which all samples are on the other surface, up to less than smaller pieces could show. That proves nothing: the box
+// around such a piece is left open.
+class AreaPieces {
+ public:
+  AreaPieces(const Cutter& cutter, double precision, int threads, const WorkMonitor& monitor)
+      : cutter_(cutter), precision_(precision), threads_(threads), monitor_(monitor) {}
+
+  // Takes pairs with such a piece out of `pairs`. Of both sides at once: what lies on pieces that were taken out is not seen.
+  void take_from(std::vector<CrossingPieces>& pairs, CutSurfaces& result) {
+    const std::size_t before = std::exchange(pairs_before_, pairs.size());
+    const bool many = before == 0 ? pairs.size() >= first_area_pairs : pairs.size() >= area_growth * before;
+    if (pairs.size() < min_area_pairs || !(many || found_)) return;
+    place(pairs);
+    std::array<std::vector<char>, 2> lies;
+    for (std::size_t s = 0; s < 2; ++s) {
+      lies[s].resize(pairs_of_[s].size());
+      parallel_for(lies[s].size(), threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) {
+          monitor_.checkpoint();
+          lies[s][g] = lies_in_other(s, g);
+        }
+      });
+    }
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (std::size_t g = 0; g < lies[s].size(); ++g) {
+        const std::vector<std::uint32_t>& own = pairs_of_[s][g];
+        // Where pieces of A hold all of it that counts, it needs no box.
+        const bool needed =
+            lies[s][g] != 0 && (s == 0 || std::any_of(own.begin(), own.end(), [&](std::uint32_t i) {
+                                  return lies[0][number_[0][i]] == 0;
+                                }));
+        if (!needed) continue;
+        const Box3& box = placed_[s][g].placed.box();
+        result.unresolved.push_back({box, pairs[own.front()].roots, pairs[own.front()].contact});
+        result.reached = result.reached && longest_side(box) <= precision_;
+        found_ = true;
+      }
+    }
+    std::vector<CrossingPieces> rest;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (lies[0][number_[0][i]] != 0 || lies[1][number_[1][i]] != 0) {
+        result.covered.push_back(pairs[i].contact);
+      } else {
+        rest.push_back(std::move(pairs[i]));
+      }
+    }
+    pairs = std::move(rest);
+    pairs_before_ = pairs.size();
+  }
+
+ private:
+  // Places each piece once, and groups pairs by it.
+  void place(const std::vector<CrossingPieces>& pairs) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      const auto name = [&](std::uint32_t i) {
+        return std::tie(pairs[i].roots[s], pairs[i].pieces[s]->path);
+      };
+      std::vector<std::uint32_t> order(pairs.size());
+      std::iota(order.begin(), order.end(), 0u);
+      std::stable_sort(order.begin(), order.end(),
+                       [&](std::uint32_t i, std::uint32_t k) { return name(i) < name(k); });
+      pairs_of_[s].clear();
+      number_[s].assign(pairs.size(), 0);
+      for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k == 0 || name(order[k]) != name(order[k - 1])) pairs_of_[s].emplace_back();
+        pairs_of_[s].back().push_back(order[k]);
+        number_[s][order[k]] = static_cast<std::uint32_t>(pairs_of_[s].size() - 1);
+      }
+      std::vector<std::optional<PlacedPatch>> found(pairs_of_[s].size());
+      parallel_for(found.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) {
+          monitor_.checkpoint();
+          found[g] = cutter_.place(s, pairs[pairs_of_[s][g].front()].pieces[s]);
+        }
+      });
+      placed_[s].clear();
+      for (std::optional<PlacedPatch>& one : found) placed_[s].push_back(std::move(*one));
+    }
+  }
+
+  [[nodiscard]] bool lies_in_other(std::size_t s, std::size_t g) const {
+    const PlacedPiece& piece = placed_[s][g].placed;
+    if (!piece.bounded_slope()) return false;
+    const double size = longest_side(piece.box());
+    // Pieces as small as the precision bend by an eighth of its square, and curves need angles above 1e-5.
+    const double noise = std::min(precision_ * precision_ / 16, 0x1p-18 * size) + 0x1p-38;
+    std::size_t missed = 0;
+    for (const TriangleParameter& at : samples) {
+      const Point3 point = piece.origin().position + piece.at(at);
+      const auto& pairs = pairs_of_[s][g];
+      const bool on = std::any_of(pairs.begin(), pairs.end(), [&](std::uint32_t i) {
+        return is_on(placed_[1 - s][number_[1 - s][i]].placed, point, noise);
+      });
+      missed += on ? 0 : 1;
+      if (samples.size() - missed < some_samples) return false;
+    }
+    return missed == 0 || size <= largest_outline * precision_;
+  }
+
+  // Is a point on a piece, up to `noise`?
+  [[nodiscard]] static bool is_on(const PlacedPiece& piece, const Point3& point, double noise) {
+    if (!piece.bounded_slope()) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(point[k] >= piece.box().lower[k] - noise && point[k] <= piece.box().upper[k] + noise))
+        return false;
+    }
+    Vector3 u, v;
+    for (const Vector3& d : piece.derivatives().u) u = u + d;
+    for (const Vector3& d : piece.derivatives().v) v = v + d;
+    const auto count = static_cast<double>(piece.derivatives().u.size());
+    u = (1 / count) * u;
+    v = (1 / count) * v;
+    Vector3 dual_u = cross(v, piece.normal()), dual_v = cross(piece.normal(), u);
+    dual_u = (1 / dot(dual_u, u)) * dual_u;
+    dual_v = (1 / dot(dual_v, v)) * dual_v;
+    const Vector3 wanted = point - piece.origin().position;
+    TriangleParameter at{1.0 / 3, 1.0 / 3};
+    Vector3 rest;
+    for (unsigned step = 0; step < max_foot_steps; ++step) {
+      rest = wanted - piece.at(at);
+      const double by_u = dot(dual_u, rest), by_v = dot(dual_v, rest);
+      at = {at.u + by_u, at.v + by_v};
+      if (!(std::fabs(at.u) + std::fabs(at.v) < 2)) return false;
+      if (std::fabs(by_u) + std::fabs(by_v) < 0x1p-46) break;
+    }
+    constexpr double slack = 0x1p-20;
+    return at.u >= -slack && at.v >= -slack && at.u + at.v <= 1 + slack && length(rest) <= noise;
+  }
+
+  const Cutter& cutter_;
+  double precision_;
+  int threads_;
+  const WorkMonitor& monitor_;
+  std::size_t pairs_before_ = 0;
+  bool found_ = false;
+  // By side: pairs of each piece, the piece of each pair, and pieces as placed.
+  std::array<std::vector<std::vector<std::uint32_t>>, 2> pairs_of_;
+  std::array<std::vector<std::uint32_t>, 2> number_;
+  std::array<std::vector<PlacedPatch>, 2> placed_;
 };
 
 // ---- Ends as points of lines that pieces have in common ----
@@ -332,7 +488,9 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
   result.compared += pieces.size();
   for (Item& item : first) take(std::move(item), frontier);
   take_late(frontier);
+  AreaPieces areas(cutter, precision, threads, monitor);
   while (!frontier.empty()) {
+    areas.take_from(frontier, result);
     // A pair makes up to 16 smaller ones.
     const std::uint64_t room = (budget - std::min(budget, result.compared)) / 16;
     if (frontier.size() > room) {

@@ -51,10 +51,13 @@ struct CutSurfaces {
   std::uint64_t compared = 0;  ///< pairs of pieces
   bool reached = true;         ///< false if open pieces are coarser than the precision
   bool budget_spent = false;   ///< and others were not compared any further
+  /// Contacts of pairs of which one piece is in the box of an unresolved one altogether.
+  std::vector<std::uint32_t> covered;
 };
 
 /// Splits pieces until they are apart, cut each other in arcs as near to straight lines as `precision`, or have no
-/// more in common than a box of that size.
+/// more in common than a box of that size. Pieces that lie in the other surface, as far as samples tell, are left as they are, each in
+/// a box of its own.
 ///
 /// Guarantee: all common points of the pieces are in the boxes of arcs or of open pieces. The same for any number of
 ///            threads.

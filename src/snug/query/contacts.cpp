@@ -9,6 +9,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/contact_curves.h>
+#include <snug/query/facet_contacts.h>
 #include <snug/query/pair_queries.h>
 #include <snug/query/touching_boxes.h>
 #include <snug/search/crossing.h>
@@ -24,8 +25,10 @@ namespace {
 // Pieces of regions are at most this share of the larger surface; those of which nothing is proved are split so many
 // times smaller.
 constexpr double largest_share = 0x1p-5, smallest_share = 0x1p-3;
-// Of an answer, about.
+// Of an answer, or one for each pair of patches in a region.
 constexpr std::size_t max_open = 4000;
+// Faces that touch are split until points of both are that near, in the query's units, or they are small.
+constexpr double touching_distance = 0x1p-36;
 
 // Two pieces that may be within the tolerance of each other. Lengths are in the query's units.
 struct ContactPair {
@@ -35,6 +38,7 @@ struct ContactPair {
   bool within = false, crossing = false;
   std::array<TriangleParameter, 2> at;                 // of the root patches: where they are about nearest
   std::array<std::shared_ptr<const Patch>, 2> pieces;  // of those that may have a point in common
+  const FacetMeeting* facets = nullptr;                // of faces that are compared exactly
   bool kept = true;                                    // is it a contact?
   std::uint32_t arc = ChainArc::none;                  // the first one in it
   std::uint32_t region = 0;
@@ -58,8 +62,10 @@ Box3 box_of(const Triangle& base, double radius) {
 class ContactWalk {
  public:
   // Adds statistics and how it ended to `answer`.
-  ContactWalk(PairFrames& frames, const ContactsOptions& options, const Run& run, Contacts& answer)
+  ContactWalk(PairFrames& frames, FacetContacts& facets, const ContactsOptions& options, const Run& run,
+              Contacts& answer)
       : frames_(frames),
+        facets_(facets),
         options_(options),
         monitor_(monitor_of(run)),
         max_splits_(run.max_splits.value_or(default_splits::contacts)),
@@ -114,7 +120,14 @@ class ContactWalk {
       if (PieceCache::can_open(pair.nodes[s]))
         size = std::max(size, static_cast<double>(walk_.size(pair, s)));
     }
-    if (size > fine_) return true;
+    if (size > fine_) {
+      const FacetMeeting* const facets = facets_of(pair);
+      if (facets == nullptr || facets->state != FacetMeeting::State::touching) return true;
+      pieces_.approach(pieces);
+      if (!(pieces.near_distance <= touching_distance)) return true;
+      list(pair, pieces);
+      return false;
+    }
     if (!(pieces.near_distance <= within_)) pieces_.approach(pieces);
     const bool done = pieces.near_distance <= within_ || within_ <= 0 || size <= smallest_share * fine_;
     if (done) list(pair, pieces);
@@ -135,13 +148,25 @@ class ContactWalk {
       item.at[s] = to_face(patch.path, pieces.at[s]);
       if (gap <= 0 && options_.curves) item.pieces[s] = std::make_shared<const Patch>(patch);
     }
+    item.facets = facets_of(pair);
+    if (item.facets != nullptr && item.facets->state != FacetMeeting::State::crossing) item.pieces = {};
     if (gap <= 0 && !options_.curves && pieces.near.certain_distance == 0) {
       item.crossing = proves_crossing(frames_, pieces);
     }
     near_.push_back(std::move(item));
   }
 
+  [[nodiscard]] const FacetMeeting* facets_of(const NodePair& pair) {
+    std::array<std::uint32_t, 2> owners;
+    for (std::size_t s = 0; s < 2; ++s) {
+      PieceCache& cache = frames_.cache(s);
+      owners[s] = cache.model().surface().place(cache.name(pair.nodes[s]).patch).owner;
+    }
+    return facets_.between(owners[0], owners[1]);
+  }
+
   PairFrames& frames_;
+  FacetContacts& facets_;
   const ContactsOptions& options_;
   const WorkMonitor& monitor_;
   std::uint64_t max_splits_;
@@ -180,12 +205,18 @@ void add_merged(std::span<UnresolvedPieces> open, std::size_t most, std::vector<
 class ContactsSearch {
  public:
   ContactsSearch(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const Run& run)
-      : frames_(a, b), options_(options), run_(run), tolerance_(frames_.length_up(*options.within)) {}
+      : frames_(a, b),
+        facets_(frames_, a, b),
+        options_(options),
+        run_(run),
+        tolerance_(frames_.length_up(*options.within)) {}
 
   Contacts run() {
-    near_ = ContactWalk(frames_, options_, run_, answer_).run();
+    near_ = ContactWalk(frames_, facets_, options_, run_, answer_).run();
     if (options_.curves) find_curves();
+    take_facets();
     find_regions();
+    add_areas();
     add_curves();
     answer_.compared = cut_.compared;
     return std::move(answer_);
@@ -217,6 +248,26 @@ class ContactsSearch {
       item.arc = std::min(item.arc, i);
     }
     for (const UnresolvedPieces& open : cut_.unresolved) near_[open.contact].kept = true;
+    for (const std::uint32_t contact : cut_.covered) near_[contact].kept = true;
+  }
+
+  // What is compared exactly is decided.
+  void take_facets() {
+    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+      ContactPair& item = near_[i];
+      if (item.facets == nullptr) continue;
+      switch (item.facets->state) {
+        case FacetMeeting::State::apart:
+          item.kept = tolerance_ > 0;
+          break;
+        case FacetMeeting::State::touching:
+          // Of quads it may be other halves that touch.
+          item.crossing = surface(0).rules().triangular() && surface(1).rules().triangular();
+          break;
+        case FacetMeeting::State::crossing:
+          break;
+      }
+    }
   }
 
   // ---- Regions ----
@@ -324,6 +375,36 @@ class ContactsSearch {
     }
   }
 
+  void add_areas() {
+    std::map<std::array<std::uint32_t, 2>, std::vector<std::uint32_t>> items;
+    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+      if (near_[i].facets == nullptr || near_[i].facets->state != FacetMeeting::State::touching) continue;
+      items[{surface(0).place(near_[i].roots[0]).owner, surface(1).place(near_[i].roots[1]).owner}].push_back(
+          i);
+    }
+    const PowerOfTwo back = frames_.to_mesh_units();
+    for (const FacetContacts::Touching& touching : facets_.touching()) {
+      // All pairs of pieces at a point are in one region; where the budget ended there may be none.
+      const BoundedPoint& first = touching.meeting->corners.front();
+      const Box3 at = widened({first.position, first.position}, first.error);
+      const auto& own = items[touching.faces];
+      const auto item = std::find_if(own.begin(), own.end(), [&](std::uint32_t i) {
+        return touch(near_[i].boxes[0], at) && touch(near_[i].boxes[1], at);
+      });
+      if (item == own.end()) continue;
+      ContactArea area{{}, 0, touching.faces, near_[*item].region};
+      for (const BoundedPoint& corner : touching.meeting->corners) {
+        const Point3& p = area.points.emplace_back(require_representable(back.apply(corner.position)));
+        const Point3 again = back.inverse().apply(p);
+        const double lost = again == corner.position ? 0 : underflow_error;
+        area.error = std::max(area.error, corner.error > 0 ? unscaled_up(corner.error, back) + lost : lost);
+      }
+      answer_.regions[area.region].verdict = Verdict::intersecting;
+      answer_.regions[area.region].distance = {0, 0};
+      answer_.areas.push_back(std::move(area));
+    }
+  }
+
   void add_curves() {
     const PowerOfTwo back = frames_.to_mesh_units();
     for (const Chains::Chain& chain : chains_of(cut_).chains) {
@@ -390,6 +471,7 @@ class ContactsSearch {
   }
 
   PairFrames frames_;
+  FacetContacts facets_;
   const ContactsOptions& options_;
   const Run& run_;
   double tolerance_;

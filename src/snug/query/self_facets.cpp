@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include <snug/geometry/exact_sign.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/facet.h>
 #include <snug/search/self_contact.h>
@@ -16,45 +15,11 @@ namespace {
 
 using FacetNames = std::array<std::uint32_t, 3>;
 
-// Corners of a polygon that is looked at; comparing each with each edge takes their square.
-constexpr std::size_t max_polygon = 64;
-
 // The faces, cut into triangles of the mesh's vertices.
 struct FacetMesh {
   std::vector<FacetNames> triangles;
   std::vector<std::uint32_t> faces;  // that each belongs to
 };
-
-// Does each edge have all other corners on its left, exactly, in one plane?
-bool convex_in_plane(std::span<const Point3> all, std::span<const VertexId> face) {
-  const auto at = [&](std::size_t k) -> const Point3& { return all[face[k % face.size()].index()]; };
-  Projection plane;
-  int turn = 0;
-  for (std::size_t i = 0; i < 3 && turn == 0; ++i) {
-    plane = {i, (i + 1) % 3};
-    turn = orientation(at(0), at(1), at(2), plane);
-  }
-  if (turn == 0) return false;
-  for (std::size_t k = 0; k < face.size(); ++k) {
-    if (orientation(at(0), at(1), at(2), at(k)) != 0) return false;
-    for (std::size_t other = k + 2; other < k + face.size(); ++other) {
-      if (orientation(at(k), at(k + 1), at(other), plane) != turn) return false;
-    }
-  }
-  return true;
-}
-
-bool may_be_compared(const LimitSurface& surface, std::span<const VertexId> face, PatchId patch) {
-  if (!is_between_corners(surface, patch)) return false;
-  const PowerOfTwo scale = surface.scale();
-  for (const VertexId v : face) {
-    const Point3& p = surface.mesh().points[v.index()];
-    if (!may_be_signed(surface.scaled_point(v)) || !scale.exact(p.x) || !scale.exact(p.y) ||
-        !scale.exact(p.z))
-      return false;
-  }
-  return face.size() == 3 || (face.size() <= max_polygon && convex_in_plane(surface.scaled_points(), face));
-}
 
 // Triangles of different faces that both name a cut through the inside of one: all of it is a contact, though names say that it is an
 // edge of both. A pair for each cut.
@@ -186,7 +151,7 @@ ComparedFacets compare_facets(const LimitSurface& surface, int threads, const Wo
     const auto [begin, end] = surface.patches_of(f);
     if (begin == end || !surface.has_patch(PatchId(begin))) continue;
     const std::span<const VertexId> face = topology.face(FaceId(f));
-    result.faces[f] = may_be_compared(surface, face, PatchId(begin));
+    result.faces[f] = is_exact_facet(surface, FaceId(f), PatchId(begin));
     result.all = result.all && result.faces[f];
     for (std::size_t k = 2; result.faces[f] && k < face.size(); ++k) {
       mesh.triangles.push_back({face[0].value(), face[k - 1].value(), face[k].value()});

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <snug/geometry/double_double.h>
+#include <snug/geometry/exact_sign.h>
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
 
@@ -65,6 +66,25 @@ std::optional<double> flatness(const QuadPoints& quad) {
   return enlarged(height + 8 * unit_roundoff * size);
 }
 
+// Does each edge have all other corners on its left, exactly, in one plane?
+bool convex_in_plane(std::span<const Point3> all, std::span<const VertexId> face) {
+  const auto at = [&](std::size_t k) -> const Point3& { return all[face[k % face.size()].index()]; };
+  Projection plane;
+  int turn = 0;
+  for (std::size_t i = 0; i < 3 && turn == 0; ++i) {
+    plane = {i, (i + 1) % 3};
+    turn = orientation(at(0), at(1), at(2), plane);
+  }
+  if (turn == 0) return false;
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    if (orientation(at(0), at(1), at(2), at(k)) != 0) return false;
+    for (std::size_t other = k + 2; other < k + face.size(); ++other) {
+      if (orientation(at(k), at(k + 1), at(other), plane) != turn) return false;
+    }
+  }
+  return true;
+}
+
 using Twofold = Vector3Of<DoubleDouble>;
 Twofold operator+(const Twofold& a, const Twofold& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
@@ -109,6 +129,20 @@ std::optional<Facet> facet_of(const LimitSurface& surface, PatchId patch) {
   }
   for (const Point3& p : facet.triangle) facet.largest = std::max(facet.largest, max_abs(p - Point3{}));
   return facet;
+}
+
+bool is_exact_facet(const LimitSurface& surface, FaceId f, PatchId patch) {
+  if (!is_between_corners(surface, patch)) return false;
+  const std::span<const VertexId> face = surface.topology().face(f);
+  const PowerOfTwo scale = surface.scale();
+  for (const VertexId v : face) {
+    const Point3& p = surface.mesh().points[v.index()];
+    if (!may_be_signed(surface.scaled_point(v)) || !scale.exact(p.x) || !scale.exact(p.y) ||
+        !scale.exact(p.z))
+      return false;
+  }
+  return face.size() == 3 ||
+         (face.size() <= max_facet_corners && convex_in_plane(surface.scaled_points(), face));
 }
 
 TriangleParameter Facet::place_of(Barycentric at) const {

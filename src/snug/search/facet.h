@@ -36,4 +36,11 @@ struct Facet {
 /// Source:    derivations/closest.md, "Facets".
 [[nodiscard]] std::optional<Facet> facet_of(const LimitSurface& surface, PatchId patch);
 
+/// Is the surface of a face the polygon of its corners, plane and strictly convex in exact arithmetic, and are these signed exactly
+/// (geometry/exact_sign.h)? Triangles may have no area.
+/// Requires:  has_patch(patch), the first one of the face.
+[[nodiscard]] bool is_exact_facet(const LimitSurface& surface, FaceId face, PatchId patch);
+/// Corners of a face that is looked at; comparing each with each edge takes their square.
+inline constexpr std::size_t max_facet_corners = 64;
+
 }  // namespace snug
