@@ -158,6 +158,104 @@ TEST(trace, in_the_plane_of_a_facet_is_the_chord) {
   EXPECT_GT(missed, trials / 8);
 }
 
+// What the ray has of the answer, from end to end.
+Interval part_of(const RayHits& found) {
+  Interval part{INFINITY, -INFINITY};
+  for (const RayHit& hit : found.hits) {
+    part.lower = std::min(part.lower, hit.t.lower);
+    part.upper = std::max(part.upper, hit.t.upper);
+  }
+  return part;
+}
+
+// Quads that are no parallelograms, and polygons that are split into such: few splits, and the chord.
+TEST(trace, in_the_plane_of_a_polygon_is_the_chord) {
+  const std::vector<std::vector<std::array<double, 2>>> polygons{
+      {{0, 0}, {8, 0}, {6, 4}, {1, 3}},         {{0, 0}, {5, -2}, {7, 1}, {1, 6}},
+      {{0, 0}, {9, 0}, {9, 1}, {0, 7}},         {{0, 0}, {4, -1}, {7, 2}, {5, 6}, {0, 5}},
+      {{0, 0}, {16, -1}, {16, 1}, {0, 0.0625}}, {{0, 0}, {3, -2}, {6, 0}, {6, 4}, {3, 6}, {0, 4}}};
+  std::mt19937_64 random(4);
+  const auto whole = [&](int most) {
+    return static_cast<double>(static_cast<int>(random() % (2 * most + 1)) - most);
+  };
+  int chords = 0, missed = 0;
+  for (int trial = 0; trial < 180; ++trial) {
+    const auto& polygon = polygons[random() % polygons.size()];
+    const Point3 corner{whole(9), whole(9), whole(9)};
+    const Vector3 e{whole(9), whole(9), whole(9)}, f{whole(9), whole(9), whole(9)};
+    if (length(cross(e, f)) < 20) continue;
+    const auto at = [&](double u, double v) { return corner + u * e + v * f; };
+    ControlMesh mesh;
+    std::vector<VertexId> face;
+    for (const auto& [u, v] : polygon) {
+      face.emplace_back(static_cast<std::uint32_t>(mesh.points.size()));
+      mesh.points.push_back(at(u, v));
+    }
+    mesh.add_face(face);
+    const Surface surface(mesh, {.scheme = Scheme::bilinear});
+    const double u = 0.5 * whole(12), v = 0.5 * whole(12), du = whole(5), dv = whole(5);
+    if (du == 0 && dv == 0) continue;
+    double first = -50, last = 50, nearest_edge = INFINITY;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const auto &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+      const double x = q[0] - p[0], y = q[1] - p[1];
+      const double height = x * (v - p[1]) - y * (u - p[0]), rate = x * dv - y * du;
+      if (rate > 0) first = std::max(first, -height / rate);
+      if (rate < 0) last = std::min(last, -height / rate);
+      if (rate == 0) nearest_edge = std::min(nearest_edge, std::fabs(height));
+      if (rate == 0 && height < 0) last = -INFINITY;
+    }
+    const RayHits found = snug::ray(surface, {at(u, v), du * e + dv * f, -50, 50}, {.query = RayQuery::all},
+                                    {.max_splits = 3000});
+    EXPECT_NE(found.outcome, Outcome::budget_spent) << trial;
+    if (last < first - 1e-3) {
+      ++missed;
+      EXPECT_TRUE(found.certain_miss()) << trial;
+    } else if (last > first) {
+      ++chords;
+      ASSERT_FALSE(found.hits.empty()) << trial;
+      EXPECT_LE(part_of(found).lower, first + 1e-12) << trial;
+      EXPECT_GE(part_of(found).upper, last - 1e-12) << trial;
+      if (nearest_edge == 0) continue;  // along an edge all depends on the tube's width
+      EXPECT_GE(part_of(found).lower, first - 1e-3) << trial;
+      EXPECT_LE(part_of(found).upper, last + 1e-3) << trial;
+    }
+  }
+  EXPECT_GT(chords, 45);
+  EXPECT_GT(missed, 20);
+}
+
+// A bent quad is two families of straight lines.
+TEST(trace, along_a_line_in_a_bent_quad_ends_soon) {
+  std::mt19937_64 random(8);
+  const auto whole = [&](int most) {
+    return static_cast<double>(static_cast<int>(random() % (2 * most + 1)) - most);
+  };
+  for (int trial = 0; trial < 40; ++trial) {
+    const std::array<Point3, 4> c{Point3{0, 0, whole(3)},
+                                  {8 + whole(2), whole(2), whole(3)},
+                                  {8 + whole(2), 8 + whole(2), whole(3)},
+                                  {whole(2), 8 + whole(2), whole(3)}};
+    ControlMesh mesh;
+    mesh.points.assign(c.begin(), c.end());
+    mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
+    const Surface surface(mesh, {.scheme = Scheme::bilinear});
+    const double share = static_cast<double>(1 + random() % 15) / 16;
+    const bool turned = trial % 2 == 0;
+    const Point3 from = turned ? c[0] + share * (c[3] - c[0]) : c[0] + share * (c[1] - c[0]),
+                 to = turned ? c[1] + share * (c[2] - c[1]) : c[3] + share * (c[2] - c[3]);
+    const Vector3 along = to - from;
+    const RayHits found =
+        snug::ray(surface, {from - along, along}, {.query = RayQuery::all}, {.max_splits = 3000});
+    EXPECT_NE(found.outcome, Outcome::budget_spent) << trial;
+    ASSERT_FALSE(found.hits.empty()) << trial;
+    EXPECT_LE(part_of(found).lower, 1 + 1e-12) << trial;
+    EXPECT_GE(part_of(found).upper, 2 - 1e-12) << trial;
+    EXPECT_GE(part_of(found).lower, 1 - 1e-2) << trial;
+    EXPECT_LE(part_of(found).upper, 2 + 1e-2) << trial;
+  }
+}
+
 TEST(trace, knows_the_ends_of_segments) {
   const Surface surface = sharp_cube();
   const auto hits = [&](double from, double to) {

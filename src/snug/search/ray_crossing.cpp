@@ -5,6 +5,7 @@
 #include <span>
 
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -16,6 +17,10 @@ constexpr unsigned max_newton_steps = 4;
 constexpr double max_bent = 0.8;
 // Extent along the line, as a multiple of errors across it, from which on a piece is cut to the tube around it.
 constexpr double max_slant = 256;
+// Lines in pieces: how well these are known, as a share of the line in them, how long that is, how far it may leave their triangle, and
+// steps to a point.
+constexpr double max_line_error = 0x1p-20, min_line = 0x1p-16, line_slack = 0x1p-16;
+constexpr unsigned max_line_steps = 6;
 // Factor that covers a few roundings of a bound.
 constexpr double ray_slack = 1 + 0x1p-40;
 
@@ -66,6 +71,33 @@ bool beyond(std::span<const Vector3> points, const Offset2& place, const Offset2
     if (!(w.x * x + w.y * y > least + 8 * unit_roundoff * largest)) return false;
   }
   return true;
+}
+
+// The extent along the line of a polygon of three or four corners, cut to a square of this half width around a place; empty where there
+// is none.
+Extent cut_to_square(std::span<const Vector3> corners, const Offset2& place, double half) {
+  // Rounding may make it cross a side more than twice: each cut leaves at most half as many corners again.
+  std::array<Vector3, 20> polygon, rest;
+  std::copy(corners.begin(), corners.end(), polygon.begin());
+  std::size_t count = corners.size();
+  for (unsigned side = 0; side < 4; ++side) {
+    const auto inside = [&](const Vector3& v) {
+      const double from = side < 2 ? v.x - place.x : v.y - place.y;
+      return half + (side % 2 == 0 ? from : -from);
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector3 &p = polygon[i], &q = polygon[(i + 1) % count];
+      const double of_p = inside(p), of_q = inside(q);
+      if (of_p >= 0) rest[kept++] = p;
+      if ((of_p >= 0) != (of_q >= 0)) rest[kept++] = p + of_p / (of_p - of_q) * (q - p);
+    }
+    polygon = rest;
+    count = kept;
+  }
+  Extent extent;
+  for (std::size_t i = 0; i < count; ++i) extent.add(polygon[i].z);
+  return extent;
 }
 
 }  // namespace
@@ -226,27 +258,79 @@ Extent SeenPiece::chord(const Offset2& place, double reach) const {
   const double rounding = 64 * unit_roundoff * largest;
   const double half = ray_slack * (error_ + reach + bend + rounding),
                along = ray_slack * (error_ + bend_along + rounding);
-  // The triangle of the corners, cut to a square around the line.
-  std::array<Vector3, 7> polygon{net_[0], net_[1], net_[2]}, rest;
-  std::size_t count = 3;
-  for (unsigned side = 0; side < 4; ++side) {
-    const auto inside = [&](const Vector3& v) {
-      const double from = side < 2 ? v.x - place.x : v.y - place.y;
-      return half + (side % 2 == 0 ? from : -from);
-    };
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vector3 &p = polygon[i], &q = polygon[(i + 1) % count];
-      const double of_p = inside(p), of_q = inside(q);
-      if (of_p >= 0) rest[kept++] = p;
-      if ((of_p >= 0) != (of_q >= 0)) rest[kept++] = p + of_p / (of_p - of_q) * (q - p);
-    }
-    polygon = rest;
-    count = kept;
-  }
-  Extent extent;
-  for (std::size_t i = 0; i < count; ++i) extent.add(polygon[i].z);
+  const Extent extent = cut_to_square(std::span(net_).first(3), place, half);
   return {extent.lower - along, extent.upper + along};
+}
+
+double SeenPiece::bend() const {
+  double bend = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    bend = std::max(bend, max_abs(net_[3 + k] - 0.5 * (net_[k] + net_[(k + 1) % 3])));
+  return bend;
+}
+
+bool SeenPiece::seems_to_hold_line(const Extent& along) const {
+  const double length = along.upper - along.lower;
+  // A line that only touches a piece is as near to it along less.
+  if (!(error_ <= max_line_error * length) || !(length >= min_line)) return false;
+  double largest = 0;
+  for (const Vector3& p : net_) largest = std::max(largest, max_abs(p));
+  const double noise = 2 * error_ + 64 * unit_roundoff * largest;
+  TriangleParameter at{1.0 / 3, 1.0 / 3};
+  for (const double share : {0.3, 0.5, 0.7}) {
+    const Vector3 wanted{0, 0, along.lower + share * length};
+    Vector3 rest;
+    // Gauss's and Newton's steps.
+    for (unsigned step = 0; step < max_line_steps; ++step) {
+      const auto [u, v] = at;
+      rest = wanted - (net_[0] + u * (along_u_ + u * uu_ + v * uv_) + v * (along_v_ + v * vv_));
+      const Vector3 du = along_u_ + (2 * u) * uu_ + v * uv_, dv = along_v_ + u * uv_ + (2 * v) * vv_;
+      const Vector3 normal = snug::cross(du, dv);
+      const double square = length_sq(normal);
+      const double by_u = dot(snug::cross(rest, dv), normal) / square,
+                   by_v = dot(snug::cross(du, rest), normal) / square;
+      at = {u + by_u, v + by_v};
+      if (!(std::fabs(at.u) + std::fabs(at.v) < 4)) return false;
+    }
+    const auto [u, v] = at;
+    if (!(max_abs(rest) <= noise) || u < -line_slack || v < -line_slack || u + v > 1 + line_slack)
+      return false;
+  }
+  return true;
+}
+
+std::optional<Extent> chord_in_plane(const RayFrame& ray, std::span<const Point3> polygon, double error,
+                                     double reach) {
+  std::array<Vector3, 4> seen;
+  SNUG_EXPECT(polygon.size() >= 3 && polygon.size() <= seen.size());
+  double largest = 0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vector3 from = polygon[k] - ray.origin;
+    seen[k] = {dot(ray.across[0], from), dot(ray.across[1], from), dot(ray.along, from)};
+    largest = std::max(largest, max_abs(from));
+  }
+  const auto count = static_cast<std::ptrdiff_t>(polygon.size());
+  const double off = ray_slack * (2 * error + 64 * unit_roundoff * largest + 64 * underflow_error);
+  // How thick the polygon is seen: across some side, or not at all.
+  const double thin = 64 * off;
+  double least = INFINITY;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    for (std::ptrdiff_t k = i + 1; k < count; ++k) {
+      const Vector3& p = seen[static_cast<std::size_t>(i)];
+      const Vector3 side = seen[static_cast<std::size_t>(k)] - p;
+      const double size = std::hypot(side.x, side.y);
+      double width = 0;
+      for (std::size_t j = 0; j < polygon.size(); ++j) {
+        const Vector3 from = seen[j] - p;
+        width = std::max(width, size > 0 ? std::fabs(cross2({side.x, side.y}, {from.x, from.y})) / size
+                                         : std::hypot(from.x, from.y));
+      }
+      least = std::min(least, width);
+    }
+  }
+  if (!(least <= thin)) return std::nullopt;
+  const Extent extent = cut_to_square(std::span(seen).first(polygon.size()), {}, ray_slack * (reach + off));
+  return Extent{extent.lower - off, extent.upper + off};
 }
 
 bool SeenPiece::passes_side(std::size_t k, const Offset2& place, double reach) const {

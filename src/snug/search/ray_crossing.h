@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <span>
 
 #include <snug/geometry/triangle.h>
 #include <snug/search/piece_leaf.h>
@@ -53,6 +55,11 @@ class SeenPiece {
   [[nodiscard]] LinePieceCrossing crossing(const Offset2& place, double reach, double enough = 0) const;
   /// Upper bound of how far the limit surface is from the quadratic, a length, rounding included.
   [[nodiscard]] double error() const { return error_; }
+  /// Does the ray's line lie in the piece, as far as some points of `along` tell? Seldom wrong, no proof, and only of pieces whose
+  /// quadratics are known to a millionth. `along`: what it may have in common with the piece.
+  [[nodiscard]] bool seems_to_hold_line(const Extent& along) const;
+  /// Upper bound of how far `along` of a bent piece is too long at either end, but for the reach.
+  [[nodiscard]] double bend() const;
   /// Does the line through `place` pass the side from corner k to the next one with more than `reach`?
   [[nodiscard]] bool passes_side(std::size_t k, const Offset2& place, double reach) const;
   /// Width of the narrowest strip along a side, or between sides, that the piece is seen in.
@@ -68,5 +75,10 @@ class SeenPiece {
   // The quadratic is net_[0] + u along_u_ + v along_v_ + u^2 uu_ + u v uv_ + v^2 vv_.
   Vector3 along_u_, along_v_, uu_, uv_, vv_;
 };
+
+/// Holds the part of a ray's line within `reach` of a convex polygon whose corners are off by at most `error` a coordinate, if the line
+/// lies in its plane up to roundings; nothing if it does not.
+[[nodiscard]] std::optional<Extent> chord_in_plane(const RayFrame& ray, std::span<const Point3> polygon,
+                                                   double error, double reach);
 
 }  // namespace snug

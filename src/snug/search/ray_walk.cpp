@@ -9,6 +9,7 @@
 #include <span>
 
 #include <snug/geometry/rounding.h>
+#include <snug/search/facet.h>
 #include <snug/search/precision.h>
 #include <snug/search/ray_group.h>
 #include <snug/surface/patch_sides.h>
@@ -25,6 +26,9 @@ constexpr double narrowing = 0x1p-10;
 constexpr unsigned tubes = 3;
 // Rays of one group are at most so far from its first one, as a share of the surface's radius.
 constexpr double widest_group = 0x1p-5;
+
+// Pieces that hold the ray's line are split until they bend by less than that: so much of it may be too long.
+constexpr double max_line_bend = 0x1p-12;
 
 // Lines beside the ray that are tried, on a spiral across the tube.
 constexpr unsigned trials = 160;
@@ -156,6 +160,23 @@ class TubeWalk {
     return {ray_, PieceCache::bounds_of(node), node.boxes->origin()};
   }
 
+  // Does the ray lie in a piece, so that smaller ones would tell no more? Then `along` is narrowed.
+  [[nodiscard]] bool lies_in(const Node& node, const SeenPiece& piece, double reach, Extent& along) {
+    if (const Patch& patch = cache_.patch(node); patch.path.level() == 0) {
+      const std::optional<Facet> facet = facet_of(cache_.model().surface(), cache_.name(node).patch);
+      if (facet && facet->far) {
+        // The whole quad: halves of it end along a curve.
+        const std::array<Point3, 4> quad{facet->triangle[0], facet->triangle[1], facet->triangle[2],
+                                         *facet->far};
+        if (const auto chord = chord_in_plane(ray_, quad, facet->error + facet->off, reach)) {
+          along = {std::max(along.lower, chord->lower), std::min(along.upper, chord->upper)};
+          return true;
+        }
+      }
+    }
+    return piece.bend() <= max_line_bend && piece.seems_to_hold_line(along);
+  }
+
   [[nodiscard]] double widest_hit() const {
     double widest = 0;
     for (const FoundHit& hit : found_.hits) widest = std::max(widest, hit.along.upper - hit.along.lower);
@@ -193,16 +214,24 @@ class TubeWalk {
       if (near.along.upper < near.along.lower || walk.outside(near.along, walk.near_.upper + reach)) {
         return Verb::drop;
       }
+      if (near.state != CrossingState::one && walk.lies_in(node, piece, reach, near.along)) {
+        if (near.along.upper < near.along.lower) return Verb::drop;
+        add_leaf(node, piece, near.along);
+        return Verb::drop;
+      }
       const double off = near.limited_by_errors ? piece.error() : piece.width() + 2 * piece.error();
       const bool out_of_budget = walk.splits_ >= walk.task_.budget || walk.cache_.full();
       if (out_of_budget) walk.found_.complete = false;
       if (out_of_budget || off <= fine || !walk.cache_.can_open_further(node)) {
-        leaves.push_back({piece, piece.crossing({}, 0), near.along, node});
-        end_of_group = std::max(end_of_group, near.along.upper);
+        add_leaf(node, piece, near.along);
         return out_of_budget ? Verb::stop : Verb::drop;
       }
       ++walk.splits_;
       return Verb::open;
+    }
+    void add_leaf(const Node& node, const SeenPiece& piece, const Extent& along) {
+      leaves.push_back({piece, piece.crossing({}, 0), along, node});
+      end_of_group = std::max(end_of_group, along.upper);
     }
     void open(const NodeGap& at) { walk.open(at, reach, walk.near_.from_middle(walk.near_.upper + reach)); }
 
