@@ -191,6 +191,9 @@ TEST(plane_facets, have_in_common_what_rational_arithmetic_says) {
         std::vector<std::size_t> on = found.elements[s];
         const std::size_t n_corners = facet.exact.size();
         ASSERT_FALSE(on.empty());
+        if (truth.size() == 1 && std::count(facet.exact.begin(), facet.exact.end(), truth[0]) == 1) {
+          EXPECT_EQ(on.size(), 1u) << what;
+        }
         if (on.size() == n_corners && truth.size() > 2) continue;
         // All of it on the element; and no smaller one would do.
         for (const Exact& t : truth) {
