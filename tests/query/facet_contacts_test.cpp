@@ -221,9 +221,9 @@ TEST(facet_contacts, are_those_of_rational_arithmetic) {
 // Scaling takes such an offset away.
 TEST(facet_contacts, are_not_told_exactly_of_offsets_that_scaling_loses) {
   Random random(1);
-  const Body a = body(random, 0.25, false);
+  const Body a = body(random, 4, false);
   const Motion pose = Motion::translation({0, 0, -std::numeric_limits<double>::denorm_min()});
-  const Contacts found = contacts(a.surface, a.surface.at(pose), {.within = 0.0, .error = 0.2});
+  const Contacts found = contacts(a.surface, a.surface.at(pose), {.within = 0.0, .error = 4});
   EXPECT_TRUE(found.areas.empty());
   EXPECT_TRUE(found.exhaustive);
 }
