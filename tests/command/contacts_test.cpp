@@ -45,6 +45,28 @@ TEST(contacts_command, lists_regions_and_curves) {
   EXPECT_EQ(names, vertices + 1);  // closed
 }
 
+TEST(contacts_command, lists_areas_of_plane_faces) {
+  const TemporaryFolder folder;
+  const std::string cube = folder.file("cube.obj");
+  std::ofstream(cube) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                         "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const std::vector<std::string> arguments{"collide",  cube,       cube,        "--scheme",
+                                           "bilinear", "--move-b", "0.3 0.2 1", "--all"};
+  const Outcome text = run_snug(arguments);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("area 0: a polygon of 4 corners, face 1 of A and face 0 of B"), std::string::npos)
+      << text.out;
+  std::vector<std::string> with_json = arguments;
+  with_json.emplace_back("--json");
+  const json answer = json::parse(run_snug(with_json).out);
+  EXPECT_EQ(answer["outcome"], "complete");
+  ASSERT_EQ(answer["areas"].size(), 1u);
+  EXPECT_EQ(answer["areas"][0]["points"].size(), 4u);
+  EXPECT_EQ(answer["areas"][0]["error"], 0);
+  EXPECT_EQ(answer["areas"][0]["region"], 0);
+  EXPECT_TRUE(answer["open"].empty());
+}
+
 TEST(contacts_command, is_coarser_with_a_small_budget_and_says_so) {
   const Outcome outcome =
       run_snug({"collide", model("bust.obj"), model("pawn.obj"), "--all", "--max-splits", "2000"});
