@@ -76,11 +76,12 @@ struct Hulls {
                                   const Run& run = {});
 
 struct EnvelopeOptions {
-  /// > 0, mesh units: largest distance of the envelope's points from the surfaces. Default: 1 % of the largest side of
-  /// the box around all of them.
+  /// > 0, mesh units: largest distance of the envelope's points from the surfaces. Default: 1 % of the size of all.
   std::optional<double> error{};
   /// >= 0, mesh units, less than `error`: their least distance. Default: a quarter of the error.
   std::optional<double> clearance{};
+  /// Mesh units, from twice the error to a quarter of the size: what no ball as wide gets to from outside is filled.
+  std::optional<double> gap{};
   bool single_precision = false;  ///< round coordinates to floats, for formats that store floats
 };
 
@@ -88,8 +89,11 @@ struct EnvelopeOptions {
 struct Envelope {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  double error = 0, clearance = 0;      ///< those that were asked for
-  Interval volume;                      ///< contains it, as Measures::volume does
+  double error = 0, clearance = 0;  ///< those that were asked for
+  std::vector<std::uint32_t>
+      bridges;                 ///< with a gap: triangles across what it fills, in order; not within `error`,
+  double bridge_distance = 0;  ///< but no point of them is farther than this from the surfaces
+  Interval volume;             ///< contains it, as Measures::volume does
   Outcome outcome = Outcome::complete;  ///< do all guarantees of envelope() hold? Else they may not
   std::vector<HullProblem> problems;    ///< unless `complete`, some of the failures
 };
@@ -98,16 +102,13 @@ struct Envelope {
 /// Holes and gaps narrower than about `error` + `clearance` are bridged; cavities that the outside does not reach are filled.
 ///
 /// Guarantee: if `complete`, all points of the surfaces lie in the solid that it bounds; each point of it is at least `clearance`
-///            and at most `error` from the surfaces; each edge belongs to two triangles, one along it each way, and triangles have
-///            nothing else in common than vertices and edges that they share. Everything was proved from the returned doubles,
-///            not from how they were found. It is not said that it is nowhere farther from the surfaces' points than that: those
-///            inside of others may be anywhere.
-/// Budget:    4,000,000 cubes in which it is sampled, some (area / error^2); 200 bytes each,
-///            and as much for pieces.
-/// Errors:    InputError: (value) without surfaces, for an error that is not finite and positive, too small for doubles or
-///            floats, or above half the size, and for a clearance that is not below it; (refused) if a mesh has no face with a limit
-///            surface; (unrepresentable). Interrupted.
-/// Cost:      some 5 microseconds a cube.
+///            and, but for `bridges`, at most `error` from the surfaces; each edge belongs to two triangles, one along it each
+///            way, and triangles meet only in vertices and edges that they share. All was proved from the returned doubles, not
+///            from how they were found. Points of the surfaces inside of others, or behind bridges, may be anywhere in it.
+/// Budget:    4,000,000 cubes in which it is sampled, some (area / error^2); 200 bytes each, and as much for pieces.
+/// Errors:    InputError: (value) without surfaces, for lengths out of range, and an error too small for doubles or floats;
+///            (refused) if a mesh has no face with a limit surface; (unrepresentable). Interrupted.
+/// Cost:      some 5 microseconds a cube; three times that with a gap.
 /// Source:    derivations/envelopes.md.
 [[nodiscard]] SNUG_API Envelope envelope(std::span<const PlacedSurface> parts,
                                          const EnvelopeOptions& options = {}, const Run& run = {});

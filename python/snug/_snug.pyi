@@ -165,6 +165,7 @@ class Surface(_Tagged):
         error: Length = None,
         *,
         clearance: Length = None,
+        gap: Length = None,
         max_splits: Optional[int] = None,
         single_precision: bool = False,
         threads: int = 0,
@@ -407,6 +408,10 @@ class Envelope:
     def error(self) -> float: ...
     @property
     def clearance(self) -> float: ...
+    @property
+    def bridges(self) -> Ids: ...
+    @property
+    def bridge_distance(self) -> float: ...
     @property
     def volume(self) -> Tuple[float, float]: ...
     @property

@@ -28,7 +28,8 @@ auto members_of(Either<Tessellation> auto& t) {
 }
 auto members_of(Either<Hull> auto& t) { return std::tie(t.positions, t.triangles, t.owners, t.gap); }
 auto members_of(Either<Envelope> auto& t) {
-  return std::tie(t.positions, t.triangles, t.error, t.clearance, t.volume, t.outcome, t.problems);
+  return std::tie(t.positions, t.triangles, t.error, t.clearance, t.bridges, t.bridge_distance, t.volume,
+                  t.outcome, t.problems);
 }
 auto members_of(Either<Hulls> auto& t) { return std::tie(t.inner, t.outer, t.outcome, t.problems, t.closed); }
 
@@ -277,12 +278,13 @@ Hulls hulls_of(const PySurface& self, const py::object& error, bool inner, bool 
 }
 
 Envelope envelope_of(const PySurface& self, const py::object& error, const py::object& clearance,
-                     const py::object& max_splits, bool single_precision, const py::object& threads,
-                     const py::object& progress) {
+                     const py::object& gap, const py::object& max_splits, bool single_precision,
+                     const py::object& threads, const py::object& progress) {
   const Surface surface = self.surface();
   EnvelopeOptions options;
   options.error = length_of(error, surface.size(), "error");
   options.clearance = length_of(clearance, surface.size(), "clearance");
+  options.gap = length_of(gap, surface.size(), "gap");
   options.single_precision = single_precision;
   Call call(progress, run_of(threads, max_splits));
   return call.run([&](const Run& run) { return envelope(surface, options, run); });
@@ -316,6 +318,14 @@ void add_envelope(py::module_& module) {
          "No point of it is farther than this from the surface.")
       .def_property_readonly(
           "clearance", [](const Envelope& self) { return self.clearance; }, "And none is nearer than this.")
+      .def_property_readonly(
+          "bridges",
+          [](const py::object& self) { return column(self.cast<const Envelope&>().bridges, self); },
+          "With a gap: rows of `faces` that are across what it fills, where `error` does not hold, (k,) "
+          "uint32.")
+      .def_property_readonly(
+          "bridge_distance", [](const Envelope& self) { return self.bridge_distance; },
+          "No point of these is farther than this from the surface.")
       .def_property_readonly(
           "volume", [](const Envelope& self) { return py::make_tuple(self.volume.lower, self.volume.upper); },
           "That of the solid that it bounds, as an interval.")
@@ -561,11 +571,11 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
            "surface.hull(\"0.5%\").\n"
            "What is guaranteed holds if .outcome is 'complete'. Raises ValueError, MeshError, OverflowError.")
       .def("envelope", &envelope_of, arg("error") = none, py::kw_only(), arg("clearance") = none,
-           arg("max_splits") = none, arg("single_precision") = false, arg("threads") = 0,
+           arg("gap") = none, arg("max_splits") = none, arg("single_precision") = false, arg("threads") = 0,
            arg("progress") = none,
            "A closed mesh around the surface, whatever it is: at most `error` (1 % of the size) and at least "
            "`clearance` (a "
-           "quarter of that) from it.\n"
+           "quarter of that) from it. gap: what no ball of this diameter gets into from outside is filled.\n"
            "What is guaranteed holds if .outcome is 'complete'. Raises ValueError, MeshError, OverflowError.")
       .def("measure", &measured, py::kw_only(), arg("relative") = none, arg("max_splits") = none,
            arg("threads") = 0, arg("progress") = none,

@@ -273,6 +273,12 @@ def test_shapes(cube):
     assert np.all(cube.closest_point(around.vertices).upper >= around.clearance)
     low, high = around.volume
     assert cube.measure().volume[1] < low <= high
+    assert around.bridges.shape == (0,) and around.bridge_distance == 0
+    tube = snug.Surface([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (0.2, 0), (0.2, 0.2), (0, 0.2))],
+                        [[k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k] for k in range(4)], scheme="bilinear")
+    filled = tube.envelope("2%", gap="24%")
+    assert filled.outcome == "complete" and filled.volume[0] > 0.04 and tube.envelope("2%").volume[1] < 0.03
+    assert len(filled.bridges) > 0 and filled.bridge_distance > filled.error and filled.bridges.max() < len(filled.faces)
     inner, outer = hulls = cube.hull("2%")
     assert hulls.outcome == "complete" and hulls.closed and hulls.problems == []
     assert cube.signed_distance(inner.vertices).upper.max() < 0 < cube.signed_distance(outer.vertices).lower.min()

@@ -27,9 +27,9 @@ PieceSet any_set(std::mt19937_64& random) {
   return set;
 }
 
-ClosedMesh around(const PieceSet& set, double offset, int threads = 1) {
+ClosedMesh around(const PieceSet& set, double offset, int threads = 1, double cell = 1.1) {
   auto mesh = offset_mesh(
-      set, {.offset = offset, .cell = 1.1 * offset, .most_cells = 1'000'000, .threads = threads}, {});
+      set, {.offset = offset, .cell = cell * offset, .most_cells = 1'000'000, .threads = threads}, {});
   EXPECT_TRUE(mesh.has_value());
   return std::move(*mesh);
 }
@@ -123,7 +123,7 @@ TEST(closed_mesh, stays_a_manifold_when_edges_collapse_and_sides_are_halved) {
       refused += !is_small;
       return is_small;
     };
-    simplify(mesh, error, i % 3 == 2 ? std::function<bool(const Triangle&)>(accept) : nullptr, kept, {});
+    simplify(mesh, error, i % 3 == 2 ? std::function<bool(const Triangle&)>(accept) : nullptr, kept, 1, {});
     ASSERT_TRUE(is_manifold(mesh)) << i;
     EXPECT_LT(mesh.triangles.size(), whole.triangles.size());
     collapsed += whole.triangles.size() - mesh.triangles.size();
@@ -147,6 +147,61 @@ TEST(closed_mesh, stays_a_manifold_when_edges_collapse_and_sides_are_halved) {
   EXPECT_GT(refused, 100u);
 }
 
+// Large meshes are collapsed in blocks, side by side.
+TEST(closed_mesh, collapses_do_not_depend_on_threads) {
+  std::mt19937_64 random(8);
+  const PieceSet set = any_set(random);
+  const ClosedMesh whole = around(set, 0.02);
+  EXPECT_GT(whole.triangles.size(), 20'000u);
+  std::vector<std::uint8_t> kept(whole.points.size());
+  for (std::uint8_t& k : kept) k = random() % 50 == 0;
+  const auto accept = [](const Triangle& t) { return distance(t[0], t[1]) < 0.2; };
+  ClosedMesh one = whole, three = whole;
+  simplify(one, 2e-3, accept, kept, 1, {});
+  simplify(three, 2e-3, accept, kept, 3, {});
+  EXPECT_EQ(one.points, three.points);
+  EXPECT_EQ(one.triangles, three.triangles);
+  EXPECT_TRUE(is_manifold(one));
+  EXPECT_LT(3 * one.triangles.size(), whole.triangles.size());
+  for (std::size_t v = 0; v < kept.size(); ++v) {
+    if (kept[v] != 0 && v % 16 == 0)
+      EXPECT_NE(std::find(one.points.begin(), one.points.end(), whole.points[v]), one.points.end());
+  }
+}
+
+// What is beyond the ball's centre on the outside is no part of it, however far from the ball's mesh.
+TEST(closed_mesh, around_a_set_and_what_no_ball_gets_to) {
+  const auto box = [](double hole) {
+    // Four sides and a floor of a cube; a lid with a slit.
+    std::vector<QuadraticTriangle> pieces;
+    const auto square = [&](const Point3& a, const Point3& b, const Point3& c, const Point3& d) {
+      pieces.push_back(flat_quadratic({a, b, c}));
+      pieces.push_back(flat_quadratic({a, c, d}));
+    };
+    const auto corner = [](double x, double y, double z) { return Point3{x - 0.5, y - 0.5, z - 0.5}; };
+    square(corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0));
+    square(corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1));
+    square(corner(0, 1, 0), corner(1, 1, 0), corner(1, 1, 1), corner(0, 1, 1));
+    square(corner(0, 0, 0), corner(0, 1, 0), corner(0, 1, 1), corner(0, 0, 1));
+    square(corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1));
+    square(corner(0, 0, 1), corner(0.5 - hole / 2, 0, 1), corner(0.5 - hole / 2, 1, 1), corner(0, 1, 1));
+    square(corner(0.5 + hole / 2, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0.5 + hole / 2, 1, 1));
+    PieceSet set(std::move(pieces));
+    set.prepare(1);
+    return set;
+  };
+  constexpr double radius = 0.1, offset = 0.03;
+  for (const auto& [hole, size] : {std::pair{0.18, 1.15}, {0.26, 0.33}}) {
+    const PieceSet set = box(hole);
+    const RollingBall ball(around(set, radius, 1, 0.2), radius - offset, 1);
+    const auto mesh = offset_mesh(
+        set, {.offset = offset, .cell = 0.03, .most_cells = 1'000'000, .ball = &ball, .threads = 1}, {});
+    ASSERT_TRUE(mesh.has_value());
+    EXPECT_TRUE(is_manifold(*mesh));
+    EXPECT_NEAR(volume(*mesh), size, 0.12) << hole;
+  }
+}
+
 TEST(closed_mesh, is_no_manifold_with_a_hole_a_fin_or_a_pinched_vertex) {
   const ClosedMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
@@ -164,7 +219,7 @@ TEST(closed_mesh, is_no_manifold_with_a_hole_a_fin_or_a_pinched_vertex) {
   EXPECT_FALSE(is_manifold(pinched));
   // A tetrahedron has no edge to collapse.
   ClosedMesh least = tetrahedron;
-  simplify(least, 10, nullptr, {}, {});
+  simplify(least, 10, nullptr, {}, 1, {});
   EXPECT_TRUE(is_manifold(least));
   EXPECT_EQ(least.triangles.size(), 4u);
 }

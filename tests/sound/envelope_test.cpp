@@ -19,7 +19,10 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <numbers>
+#include <optional>
 #include <random>
+#include <set>
 #include <string>
 
 namespace snug::envelope_test {
@@ -32,13 +35,13 @@ using testing::both;
 constexpr oracle::Placement in_place{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 struct Outcomes {
-  std::size_t complete = 0, triangles = 0, points = 0, inside = 0, near_least = 0, near_most = 0;
+  std::size_t complete = 0, triangles = 0, points = 0, inside = 0, near_least = 0, near_most = 0, bridges = 0;
   std::map<std::string, std::size_t> others;
 
   void print(const char* name) const {
     std::cout << "  " << name << ": " << complete << " complete, " << triangles << " triangles, " << points
               << " points of them (" << near_least << " within a tenth of the clearance, " << near_most
-              << " of the error), " << inside << " points of surfaces inside";
+              << " of the error), " << inside << " points of surfaces inside, " << bridges << " bridges";
     for (const auto& [why, count] : others) std::cout << "; " << why << ' ' << count;
     std::cout << '\n';
   }
@@ -60,6 +63,11 @@ void expect_envelope(const Envelope& found, const Distance& distance, const std:
     ++outcomes.inside;
   });
   std::uniform_real_distribution<double> unit(0, 1);
+  std::set<std::array<std::uint32_t, 3>> bridges;
+  for (const std::uint32_t t : found.bridges) bridges.insert(found.triangles.at(t));
+  EXPECT_EQ(bridges.size(), found.bridges.size()) << name;
+  EXPECT_EQ(bridges.empty(), found.bridge_distance == 0) << name;
+  outcomes.bridges += bridges.size();
   testing::for_some(found.triangles, 50, [&](const std::array<std::uint32_t, 3>& t) {
     // A corner, the middle of a side, and anywhere.
     const double a = unit(random), b = unit(random) * (1 - a);
@@ -71,7 +79,7 @@ void expect_envelope(const Envelope& found, const Distance& distance, const std:
       }
       const Interval far = distance(p);
       EXPECT_GE(far.upper * (1 + 1e-9), found.clearance) << name;
-      EXPECT_LE(far.lower * (1 - 1e-9), found.error) << name;
+      EXPECT_LE(far.lower * (1 - 1e-9), bridges.contains(t) ? found.bridge_distance : found.error) << name;
       outcomes.near_least += far.upper < 1.1 * found.clearance;
       outcomes.near_most += far.lower > 0.9 * found.error;
       ++outcomes.points;
@@ -88,6 +96,7 @@ EnvelopeOptions any_options(double size, std::mt19937_64& random) {
     how.clearance = std::array{0.0, 0.1, 0.6}[which - 1] * *how.error;
   }
   how.single_precision = random() % 4 == 0;
+  if (random() % 3 == 0) how.gap = std::min(std::array{2.0, 3.0, 6.0}[random() % 3] * *how.error, size / 4);
   return how;
 }
 
@@ -206,6 +215,112 @@ TEST(envelopes, of_soups_of_facets_are_around_them) {
   EXPECT_GE(12 * outcomes.complete, 11 * soups);
 }
 
+struct Facets {
+  std::vector<Point> points;
+  std::vector<oracle::Triangle> triangles;
+
+  std::uint32_t add(double x, double y, double z) {
+    points.push_back({x, y, z});
+    return static_cast<std::uint32_t>(points.size() - 1);
+  }
+  // Rings of so many points around the z axis, by radius and height, and what is between them.
+  void add_rings(const std::vector<std::pair<double, double>>& rings) {
+    constexpr std::uint32_t sides = 24;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      for (std::uint32_t k = 0; k < sides; ++k) {
+        const double angle = 2 * std::numbers::pi * k / sides;
+        const auto [radius, z] = rings[i];
+        const std::uint32_t v = add(radius * std::cos(angle), radius * std::sin(angle), z);
+        if (i == 0) continue;
+        const std::uint32_t next = k + 1 == sides ? v + 1 - sides : v + 1;
+        triangles.push_back({v - sides, v, next});
+        triangles.push_back({v - sides, next, next - sides});
+      }
+    }
+  }
+  // A sphere with a hole at each pole.
+  void add_sphere(double radius, double upper_hole, double lower_hole) {
+    std::vector<std::pair<double, double>> rings;
+    const double first = std::asin(upper_hole / radius),
+                 last = std::numbers::pi - std::asin(lower_hole / radius);
+    for (int i = 0; i <= 10; ++i) {
+      const double angle = first + (last - first) * i / 10;
+      rings.emplace_back(radius * std::sin(angle), radius * std::cos(angle));
+    }
+    add_rings(rings);
+  }
+};
+
+// A ball as wide as the gap goes through wider holes, and through no others, whatever is behind them.
+TEST(envelopes, with_a_gap_go_through_holes_that_are_wider) {
+  constexpr double gap = 0.4;
+  struct Case {
+    const char* name;
+    std::function<void(Facets&)> make;
+    std::vector<std::pair<double, int>> winding;  // by heights on the axis
+    std::optional<bool> bridged;
+  };
+  const auto sphere = [](double hole, double other = 1e-3) {
+    return [=](Facets& f) { f.add_sphere(1, hole * gap / 2, other * gap / 2); };
+  };
+  const auto tube = [](double radius) {
+    return [=](Facets& f) {
+      f.add_rings({{radius * gap / 2, 0}, {radius * gap / 2, 1}, {radius * gap / 2, 2}});
+    };
+  };
+  const std::vector<Case> cases{
+      {"half as wide", sphere(0.5), {{0, 1}, {0.9, 1}}, true},
+      {"almost as wide", sphere(0.95), {{0, 1}, {0.7, 1}}, true},
+      {"a little wider", sphere(1.15), {{0, 0}, {0.7, 0}}, {}},
+      {"wider, and a place between as far from all", sphere(1.6), {{0, 0}, {0.7, 0}}, false},
+      // From both sides the ball comes deeper into the narrow one than the sheet is thick.
+      {"one narrow, one wide", sphere(0.6, 1.4), {{0, 0}, {0.99, 0}, {-1, 0}}, {}},
+      {"both narrow", sphere(0.6, 0.9), {{0, 1}, {0.95, 1}, {-0.85, 1}}, true},
+      {"a narrow tube", tube(0.6), {{0.5, 1}, {1, 1}, {1.5, 1}}, true},
+      {"a tube almost as wide", tube(0.93), {{0.5, 1}, {1, 1}, {1.5, 1}}, true},
+      {"a wide tube", tube(1.3), {{-0.1, 0}, {1, 0}, {2.1, 0}}, false},
+      {"nested, the outer one open",
+       [&](Facets& f) {
+         f.add_sphere(1, 0.4, 1e-3);
+         f.add_sphere(0.35, 0.1, 1e-3);
+       },
+       {{0, 1}, {0.7, 0}},
+       true},
+      {"nested, the inner one open",
+       [&](Facets& f) {
+         f.add_sphere(1, 0.1, 1e-3);
+         f.add_sphere(0.5, 0.3, 1e-3);
+       },
+       {{0, 1}, {0.7, 1}},
+       true},
+  };
+  std::mt19937_64 random(4716);
+  Outcomes outcomes;
+  for (const Case& c : cases) {
+    Facets made;
+    c.make(made);
+    ControlMesh mesh;
+    for (const Point& p : made.points) mesh.points.push_back({p[0], p[1], p[2]});
+    for (const auto& [x, y, z] : made.triangles)
+      mesh.add_face(std::array{VertexId(x), VertexId(y), VertexId(z)});
+    const Surface surface = testing::public_surface(mesh, {Scheme::flat});
+    const Envelope found = envelope(surface, {.error = 0.06, .gap = gap}, {.threads = 2});
+    ASSERT_EQ(found.outcome, Outcome::complete) << c.name;
+    EXPECT_EQ(!found.bridges.empty(), c.bridged.value_or(!found.bridges.empty()))
+        << c.name << ' ' << found.bridges.size();
+    EXPECT_LE(found.bridge_distance, gap) << c.name;
+    const oracle::HullTwin surface_twin(made.points, made.triangles);
+    expect_envelope(
+        found, [&](const Point& p) { return Interval(surface_twin.distance(p)); }, made.points, random,
+        c.name, outcomes);
+    const oracle::HullTwin twin = testing::hull_twin({found.positions, found.triangles, {}, 0});
+    for (const auto& [z, winding] : c.winding) {
+      EXPECT_EQ(twin.winding({0.001, 0.002, z}), winding) << c.name << " at " << z;
+    }
+  }
+  outcomes.print("holes");
+}
+
 // Parts at their poses: the envelope is around all of them, and answers do not depend on threads.
 TEST(envelopes, of_parts_are_around_all_of_them) {
   std::mt19937_64 random(4714);
@@ -287,6 +402,9 @@ TEST(envelopes, refuse_what_is_no_question) {
   EXPECT_EQ(problem({.error = 1e-12}), InputProblem::value);
   EXPECT_EQ(problem({.error = 0.1, .clearance = 0.1}), InputProblem::value);
   EXPECT_EQ(problem({.error = 0.1, .clearance = -1.0}), InputProblem::value);
+  EXPECT_EQ(problem({.error = 0.1, .gap = 0.19}), InputProblem::value);
+  EXPECT_EQ(problem({.error = 0.1, .gap = NAN}), InputProblem::value);
+  EXPECT_EQ(problem({.error = 0.01, .gap = 5.0}), InputProblem::value);
   EXPECT_THROW(static_cast<void>(envelope(std::span<const PlacedSurface>{})), InputError);
   // A small budget says so, and hands out nothing.
   const Envelope none = envelope(part, {.error = 1e-3}, {.max_splits = 1000});

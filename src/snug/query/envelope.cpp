@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -49,8 +52,12 @@ constexpr std::size_t max_contacts = 100'000, max_problems = 100;
 struct Effort {
   int halvings;
   bool if_open;  // the answer where these do not decide
+  bool bridges;  // is it enough that a ball does not get there?
 };
-constexpr Effort look{3, true}, proof{16, false};
+constexpr Effort look{3, true, true}, proof{16, false, true}, proof_of_error{16, false, false};
+// With a gap: sides of cubes of the radius; and, of the band's width, how far the ball reaches beyond the level, so that distances from
+// the surfaces decide where they can, and how closely distances of bridges are bounded.
+constexpr double cell_of_radius = 0.125, beyond_share = 0.1, overlap_share = 0.2, bridge_share = 0.5;
 // A pose sums four terms, each at most twice the largest coordinate or offset, in each of three coordinates.
 constexpr double pose_roundings = 64 * unit_roundoff;
 
@@ -109,6 +116,33 @@ std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, 
   return result;
 }
 
+Point3 centre_of(const Triangle& t) { return t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0])); }
+
+// What was found out about points and triangles that collapses ask for again, by their coordinates; later ones take the places of
+// former ones. No proof rests on it.
+class LookTable {
+ public:
+  template <class Find>
+  bool ask(std::span<const Point3> of, const Find& find) {
+    std::uint64_t hash = of.size();
+    for (const Point3& p : of) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(p[a])) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+      }
+    }
+    std::atomic<std::uint64_t>& slot = slots_[hash >> 43];
+    const std::uint64_t known = slot.load(std::memory_order_relaxed);
+    if (known >> 1 == hash >> 1) return (known & 1u) != 0;
+    const bool answer = find();
+    slot.store((hash & ~std::uint64_t{1}) | (answer ? 1u : 0u), std::memory_order_relaxed);
+    return answer;
+  }
+
+ private:
+  std::vector<std::atomic<std::uint64_t>> slots_ = std::vector<std::atomic<std::uint64_t>>(1u << 21);
+};
+
 bool contains(const Box3& box, const Point3& p) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(box.lower[a] <= p[a] && p[a] <= box.upper[a])) return false;
@@ -122,12 +156,32 @@ class EnvelopeMaker {
       : pieces_(pieces), options_(options), run_(run), monitor_(stop_only(run)), band_(band) {}
 
   Envelope run() {
+    const double width = band_.upper - band_.lower;
+    const double side = std::min(cell_of_level * level(), cell_of_width * width);
+    OffsetMeshOptions options{.offset = 0,
+                              .cell = 0,
+                              .most_cells = run_.max_splits.value_or(default_splits::envelope),
+                              .ball = nullptr,
+                              .threads = run_.threads};
+    if (options_.gap) {
+      radius_ = pieces_.scale.apply(*options_.gap) / 2;
+      options.offset = radius_;
+      options.cell = std::max(cell_of_radius * radius_, 0.8 * side);
+      std::optional<ClosedMesh> around = offset_mesh(pieces_.set, options, monitor_);
+      if (!around) return without(HullFault::too_few_triangles, pieces_.members[0]);
+      parallel_for(around->points.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          Point3& p = around->points[v];
+          const QuadraticFoot foot = nearest_foot(pieces_.set, p);
+          if (foot.distance > 0) p = foot.point + (radius_ / foot.distance) * (p - foot.point);
+        }
+      });
+      ball_.emplace(std::move(*around), radius_ - level() + beyond_share * width, run_.threads);
+      options.ball = &*ball_;
+    }
+    options.offset = level();
     for (const double share : cell_shares) {
-      const OffsetMeshOptions options{
-          .offset = level(),
-          .cell = share * std::min(cell_of_level * level(), cell_of_width * (band_.upper - band_.lower)),
-          .most_cells = run_.max_splits.value_or(default_splits::envelope),
-          .threads = run_.threads};
+      options.cell = share * side;
       std::optional<ClosedMesh> made = offset_mesh(pieces_.set, options, monitor_);
       if (!made) return without(HullFault::too_few_triangles, pieces_.members[0]);
       monitor_of(run_).report(0.4);
@@ -136,7 +190,8 @@ class EnvelopeMaker {
       monitor_of(run_).report(0.6);
       // Looked at here and there, judged at the end.
       ClosedMesh fine = mesh_;
-      if (!reduce(last_move_share, [&](const Triangle& t) { return faces_away(t) && is_in_band(t, look); })) {
+      const auto accept = [&](const Triangle& t) { return looks_.ask(t, [&] { return looks_right(t); }); };
+      if (!reduce(last_move_share, accept)) {
         mesh_ = std::move(fine);
       }
       monitor_of(run_).report(0.9);
@@ -150,6 +205,7 @@ class EnvelopeMaker {
  private:
   enum State : std::uint8_t { proved, to_halve };
 
+  [[nodiscard]] const RollingBall* ball() const { return ball_ ? &*ball_ : nullptr; }
   [[nodiscard]] double level() const { return band_.lower + level_share * (band_.upper - band_.lower); }
   [[nodiscard]] Triangle corners(Index t) const {
     const auto& [a, b, c] = mesh_.triangles[t];
@@ -157,10 +213,12 @@ class EnvelopeMaker {
   }
   [[nodiscard]] Point3 in_mesh_units(const Point3& p) const { return pieces_.scale.inverse().apply(p); }
 
-  // Vertices nearer than `least` go to the level. Those that are far stay: they are where gaps are bridged.
-  void push_off(double least) {
+  // Vertices nearer than `least` go to the level, of those that are marked, if any are. Those that are far stay: they are where gaps
+  // are bridged.
+  void push_off(double least, std::span<const std::uint8_t> marked = {}) {
     parallel_for(mesh_.points.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
+        if (!marked.empty() && marked[v] == 0) continue;
         Point3& p = mesh_.points[v];
         const QuadraticFoot foot = least > 0 ? nearest_foot(pieces_.set, p) : QuadraticFoot{};
         if (foot.distance < least && foot.distance > 0) {
@@ -199,10 +257,10 @@ class EnvelopeMaker {
         p = as_written(p);
         const Vector3 outward = normalized(normals[vertices[i]]);
         Point3 at = p;
-        QuadraticFoot foot;
+        OffsetHeight there;
         for (int step = 0; step < max_steps && distance(at, p) <= level(); ++step) {
-          foot = nearest_foot(pieces_.set, at, foot);
-          const double off = foot.distance - level();
+          there = height_at(pieces_.set, level(), ball(), at, there);
+          const double off = there.height;
           if (std::fabs(off) <= most) {
             p = as_written(at);
             break;
@@ -214,17 +272,32 @@ class EnvelopeMaker {
   }
   // Fewer triangles, all of them proved. Where that fails all that is near stays as it is. False if it fails even so.
   bool reduce(double share, const std::function<bool(const Triangle&)>& accept) {
-    const ClosedMesh whole = mesh_;
+    const double least = accept ? 0 : level() - near_share * (band_.upper - band_.lower);
+    ClosedMesh whole = mesh_;
     std::vector<std::uint8_t> kept;
     for (int round = 0; round < max_reductions; ++round) {
       mesh_ = whole;
       const bool last = round + 1 == max_reductions;
       if (last) kept.assign(whole.points.size(), 1);
-      simplify(mesh_, share * (band_.upper - band_.lower), accept, kept, monitor_);
-      push_off(accept ? 0 : level() - near_share * (band_.upper - band_.lower));
+      simplify(mesh_, share * (band_.upper - band_.lower), accept, kept, run_.threads, monitor_);
+      push_off(least);
       wrong_.assign(mesh_.triangles.size(), to_halve);
       if (repair(last ? max_rounds : first_rounds)) return true;
-      if (!last) keep_near_wrong(std::ldexp(level(), round), whole, kept);
+      if (last) return false;
+      keep_near_wrong(std::ldexp(level(), round), whole, kept);
+      if (accept || round > 0) continue;
+      // Where collapses are not to blame no number of them helps.
+      mesh_ = whole;
+      push_off(least, kept);
+      wrong_.assign(mesh_.triangles.size(), proved);
+      for (Index t = 0; t < wrong_.size(); ++t) {
+        for (const Index v : mesh_.triangles[t]) {
+          if (kept[v] != 0) wrong_[t] = to_halve;
+        }
+      }
+      if (!halve_wrong(first_rounds)) return false;
+      whole = mesh_;
+      kept.resize(whole.points.size(), 1);
     }
     return false;
   }
@@ -255,61 +328,115 @@ class EnvelopeMaker {
       for (std::size_t t = begin; t < end; ++t) {
         if (wrong_[t] == proved) continue;
         monitor_.checkpoint();
-        wrong_[t] = is_in_band(corners(static_cast<Index>(t)), proof) ? proved : to_halve;
+        const Triangle facet = corners(static_cast<Index>(t));
+        const QuadraticFoot foot = nearest_foot(pieces_.set, centre_of(facet));
+        wrong_[t] = is_in_band(facet, foot, proof) ? proved : to_halve;
       }
     });
   }
-  // Halves facets until all are in the band, and none touches another.
-  bool repair(int rounds) {
+  // Halves facets until all are in the band: false if these become more and more, or rounds do not do.
+  bool halve_wrong(int rounds) {
     const std::size_t most = 2 * mesh_.triangles.size() + facets_beside;
+    std::size_t at_first = 0;
     for (int round = 0;; ++round) {
       judge();
-      if (std::all_of(wrong_.begin(), wrong_.end(), [](std::uint8_t s) { return s == proved; })) {
-        const auto pairs = self_contacts(mesh_.points, mesh_.triangles, max_contacts, run_.threads, monitor_);
-        if (pairs.empty()) return true;
-        for (const TrianglePair& pair : pairs) wrong_[pair.a] = wrong_[pair.b] = to_halve;
-        if (rounds == first_rounds) return false;
-      }
-      if (round == rounds || mesh_.triangles.size() > most) return false;
+      const auto count = static_cast<std::size_t>(std::count(wrong_.begin(), wrong_.end(), to_halve));
+      if (count == 0) return true;
+      if (round < 3) at_first = std::max(at_first, count);
+      if (round == rounds || mesh_.triangles.size() > most || count > 4 * at_first) return false;
       steer(halve_longest_sides(mesh_, wrong_));
     }
   }
+  // The same, until none touches another, too.
+  bool repair(int rounds) {
+    for (int round = 0; halve_wrong(rounds); ++round) {
+      const auto pairs = self_contacts(mesh_.points, mesh_.triangles, max_contacts, run_.threads, monitor_);
+      if (pairs.empty()) return true;
+      for (const TrianglePair& pair : pairs) wrong_[pair.a] = wrong_[pair.b] = to_halve;
+      if (rounds == first_rounds || round == rounds) return false;
+      steer(halve_longest_sides(mesh_, wrong_));
+    }
+    return false;
+  }
 
   // With `proof`: all points of the facet are at least band.lower and at most band.upper from the surfaces.
-  [[nodiscard]] bool is_in_band(const Triangle& corners, Effort effort) const {
+  [[nodiscard]] bool is_in_band(const Triangle& corners, const QuadraticFoot& foot, Effort effort) const {
     QuadraticTriangle facet = flat_quadratic(corners);
     facet.error = band_.lower;
     if (may_meet(pieces_.set, facet, (band_.upper - band_.lower) / 32)) return false;
-    QuadraticFoot foot;
     return is_near(corners, foot, effort);
   }
-  // All points of a triangle are no farther from a point of the surfaces than its corners. Halves it where that is too far.
-  [[nodiscard]] bool is_near(const Triangle& t, QuadraticFoot& foot, Effort effort) const {
-    const Point3 centre = t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0]));
-    foot = nearest_foot(pieces_.set, centre, foot);
+  // All points of a triangle are no farther from a point of the surfaces than its corners. Halves it where that is too far. `foot`:
+  // of its centre.
+  [[nodiscard]] bool is_near(const Triangle& t, const QuadraticFoot& foot, Effort effort) const {
+    if (effort.bridges && foot.distance > bridged_from() && is_bridge(t)) return true;
     if (foot.distance > band_.upper) return false;
-    double far = 0;
-    for (const Point3& p : t) far = std::max(far, distance(p, foot.point));
-    if (enlarged(far + pieces_.set[foot.piece].error) + distance_rounding <= band_.upper) return true;
+    if (farthest(t, foot) <= band_.upper) return true;
     if (effort.halvings == 0) return effort.if_open;
     const std::size_t k = longest_side(t);
     const Point3 middle = t[k] + 0.5 * (t[(k + 1) % 3] - t[k]);
     for (const std::size_t moved : {k, (k + 1) % 3}) {
       Triangle half = t;
       half[moved] = middle;
-      if (!is_near(half, foot, {effort.halvings - 1, effort.if_open})) return false;
+      if (!is_near(half, nearest_foot(pieces_.set, centre_of(half), foot),
+                   {effort.halvings - 1, effort.if_open, effort.bridges}))
+        return false;
     }
     return true;
   }
-  // Meshes whose facets all do hardly touch themselves; no proof rests on it.
-  [[nodiscard]] bool faces_away(const Triangle& t) const {
-    const Point3 centre = t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0]));
-    const QuadraticFoot foot = nearest_foot(pieces_.set, centre);
-    return foot.distance > band_.lower && foot.distance < band_.upper &&
-           dot(unit_normal(t), centre - foot.point) > least_facing * foot.distance &&
-           std::all_of(t.begin(), t.end(), [&](const Point3& p) {
-             return nearest_foot(pieces_.set, p, foot).distance < band_.upper;
+  // At least how far the points of a triangle are from a point of the surfaces near that foot.
+  [[nodiscard]] double farthest(const Triangle& t, const QuadraticFoot& foot) const {
+    double far = 0;
+    for (const Point3& p : t) far = std::max(far, distance(p, foot.point));
+    return enlarged(far + pieces_.set[foot.piece].error) + distance_rounding;
+  }
+  // The same of points in parts of it: about the least such bound.
+  [[nodiscard]] double bridge_distance(const Triangle& t, const QuadraticFoot& foot, int halvings) const {
+    const double far = farthest(t, foot);
+    if (halvings == 0 || far <= foot.distance + bridge_share * (band_.upper - band_.lower)) return far;
+    const std::size_t k = longest_side(t);
+    const Point3 middle = t[k] + 0.5 * (t[(k + 1) % 3] - t[k]);
+    double most = 0;
+    for (const std::size_t moved : {k, (k + 1) % 3}) {
+      Triangle half = t;
+      half[moved] = middle;
+      const QuadraticFoot near = nearest_foot(pieces_.set, centre_of(half), foot);
+      most = std::max(most, bridge_distance(half, near, halvings - 1));
+    }
+    return most;
+  }
+  // Beyond this facets may be bridges: less than the error, so that those between are one or the other.
+  [[nodiscard]] double bridged_from() const {
+    return ball_ ? band_.upper - overlap_share * (band_.upper - band_.lower) : INFINITY;
+  }
+  // Where a ball with the gap's diameter does not get to, so that no error is asked for. No proof rests on it.
+  [[nodiscard]] bool is_filled(const Point3& p) const {
+    return ball_ && nearest_foot(ball_->facets, p).distance >= radius_ - bridged_from();
+  }
+  [[nodiscard]] bool is_bridge(const Triangle& t) const {
+    return is_filled(centre_of(t)) && std::all_of(t.begin(), t.end(), [&](const Point3& p) {
+             return is_filled(p) || nearest_foot(pieces_.set, p).distance <= band_.upper;
            });
+  }
+  // A look at what a collapse would make. Meshes whose facets all face away hardly touch themselves.
+  [[nodiscard]] bool looks_right(const Triangle& t) {
+    const Point3 centre = centre_of(t);
+    const Vector3 normal = unit_normal(t);
+    const QuadraticFoot foot = nearest_foot(pieces_.set, centre);
+    if (!(foot.distance > band_.lower)) return false;
+    if (!(foot.distance < band_.upper && dot(normal, centre - foot.point) > least_facing * foot.distance)) {
+      // Towards the ball, then.
+      if (!is_filled(centre)) return false;
+      const QuadraticFoot to = nearest_foot(ball_->facets, centre);
+      if (!(dot(normal, to.point - centre) > least_facing * to.distance)) return false;
+    }
+    return std::all_of(t.begin(), t.end(),
+                       [&](const Point3& p) {
+                         return looks_.ask(std::span(&p, 1), [&] {
+                           return nearest_foot(pieces_.set, p, foot).distance < band_.upper || is_filled(p);
+                         });
+                       }) &&
+           is_in_band(t, foot, look);
   }
 
   Envelope written() {
@@ -332,6 +459,16 @@ class EnvelopeMaker {
     if (mesh_.triangles.empty() || !is_manifold(mesh_))
       return without(HullFault::meets_itself, pieces_.members[0]);
     Envelope result = written();
+    for (Index t = 0; ball_ && t < result.triangles.size(); ++t) {
+      const auto& [a, b, c] = result.triangles[t];
+      const Triangle facet{mesh_.points[a], mesh_.points[b], mesh_.points[c]};
+      const QuadraticFoot foot = nearest_foot(pieces_.set, centre_of(facet));
+      if (is_near(facet, foot, proof_of_error)) continue;
+      result.bridges.push_back(t);
+      const double most = bridge_distance(facet, foot, proof_of_error.halvings);
+      result.bridge_distance =
+          std::max(result.bridge_distance, enlarged(pieces_.scale.inverse().apply(most)));
+    }
     ControlMesh mesh;
     mesh.points = result.positions;
     for (const auto& [a, b, c] : result.triangles)
@@ -357,7 +494,10 @@ class EnvelopeMaker {
   const Run& run_;
   WorkMonitor monitor_;
   Interval band_;  // of distances, in the units of the pieces
+  std::optional<RollingBall> ball_;
+  double radius_ = 0;  // of that
   ClosedMesh mesh_;
+  LookTable looks_;
   std::vector<std::uint8_t> wrong_;  // a State for each triangle
 };
 
@@ -378,6 +518,14 @@ Envelope envelope(std::span<const PlacedSurface> parts, const EnvelopeOptions& w
     throw InputError(
         InputProblem::value,
         "envelope: the error is more than half of the surfaces' size; give at most " + shortest(size / 2));
+  }
+  if (options.gap) {
+    require_length(*options.gap, "envelope: the gap");
+    if (*options.gap < 2 * *options.error || *options.gap > size / 4) {
+      throw InputError(InputProblem::value,
+                       "envelope: the gap must be at least twice the error, " + shortest(2 * *options.error) +
+                           ", and at most a quarter of the surfaces' size, " + shortest(size / 4));
+    }
   }
   double largest = 0;
   for (const Point3& p : {box.lower, box.upper}) largest = std::max(largest, max_abs(p - Point3{}));

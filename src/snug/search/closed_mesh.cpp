@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <snug/search/piece.h>
+#include <support/parallel.h>
 #include <support/point.h>
 
 namespace snug {
@@ -21,6 +22,9 @@ constexpr Index no_vertex = UINT32_MAX;
 constexpr double pull = 1e-3;
 // The least cosine between a triangle and what it becomes.
 constexpr double least_cosine = 0.5;
+// Meshes with as many triangles are collapsed in as many blocks of vertices first, side by side; then as a whole.
+constexpr std::size_t least_in_blocks = 8'000;
+constexpr Index block_count = 32;
 
 // The weighted sum of the squares of the distances from planes.
 class Quadric {
@@ -74,6 +78,11 @@ class Simplifier {
         quadrics_(mesh.points.size()),
         age_(mesh.points.size()),
         marks_(mesh.points.size()) {
+    std::vector<Index> valence(mesh.points.size());
+    for (const Names& names : mesh.triangles) {
+      for (const Index v : names) ++valence[v];
+    }
+    for (Index v = 0; v < valence.size(); ++v) around_[v].reserve(valence[v] + 2);
     for (Index t = 0; t < mesh.triangles.size(); ++t) {
       const Names& names = mesh.triangles[t];
       const Vector3 area = area_of(names);
@@ -86,22 +95,21 @@ class Simplifier {
     }
   }
 
-  void run(const WorkMonitor& monitor) {
-    for (const Names& t : mesh_.triangles) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (t[k] < t[(k + 1) % 3]) offer(t[k], t[(k + 1) % 3]);
-      }
+  void run(int threads, const WorkMonitor& monitor) {
+    if (mesh_.triangles.size() > least_in_blocks) {
+      std::vector<Pass> passes(block_count);
+      for (Index i = 0; i < block_count; ++i) passes[i].block = i;
+      visit_edges([&](Index a, Index b) {
+        if (block_of(a) == block_of(b)) passes[block_of(a)].edges.emplace_back(a, b);
+      });
+      parallel_for(block_count, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) collapse_all(passes[i], monitor);
+      });
     }
-    for (std::size_t n = 0; !queue_.empty(); ++n) {
-      if (n % 1024 == 0) monitor.checkpoint();
-      const Offer best = queue_.top();
-      queue_.pop();
-      if (best.age != age_[best.a] + age_[best.b] || around_[best.a].empty() || around_[best.b].empty())
-        continue;
-      Quadric sum = quadrics_[best.a];
-      sum += quadrics_[best.b];
-      if (const Vector3 to = place(best.a, best.b, sum); can_collapse(best, to)) collapse(best, to);
-    }
+    Pass whole;
+    visit_edges([&](Index a, Index b) { whole.edges.emplace_back(a, b); });
+    std::fill(marks_.begin(), marks_.end(), 0);
+    collapse_all(whole, monitor);
     std::erase_if(mesh_.triangles, [](const Names& t) { return t[0] == no_vertex; });
     drop_unused_points(mesh_);
   }
@@ -116,19 +124,69 @@ class Simplifier {
     }
   };
 
+  // Edges of one block, and what is looked at for one question at a time.
+  struct Pass {
+    Index block = block_count;                     // all of the mesh
+    std::vector<std::pair<Index, Index>> edges{};  // at first
+    std::priority_queue<Offer> queue{};
+    Index mark = 0;
+  };
+
+  template <class Visit>
+  void visit_edges(const Visit& visit) const {
+    for (const Names& t : mesh_.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (t[k] < t[(k + 1) % 3]) visit(t[k], t[(k + 1) % 3]);
+      }
+    }
+  }
+
+  // By the names of vertices, which lie side by side in order.
+  [[nodiscard]] Index block_of(Index v) const {
+    return static_cast<Index>(std::uint64_t{v} * block_count / mesh_.points.size());
+  }
+  // Passes of different blocks have no vertex in common that they read or write.
+  [[nodiscard]] bool is_in(const Pass& pass, Index v) const {
+    return pass.block == block_count || block_of(v) == pass.block;
+  }
+  [[nodiscard]] bool is_within(const Pass& pass, Index v) const {
+    if (pass.block == block_count) return true;
+    bool within = true;
+    visit_neighbours(v, [&](Index w) { within = within && is_in(pass, w); });
+    return within;
+  }
+
+  void collapse_all(Pass& pass, const WorkMonitor& monitor) {
+    for (const auto& [a, b] : pass.edges) offer(pass, a, b);
+    pass.edges = {};
+    for (std::size_t n = 0; !pass.queue.empty(); ++n) {
+      if (n % 1024 == 0) monitor.checkpoint();
+      const Offer best = pass.queue.top();
+      pass.queue.pop();
+      if (best.age != age_[best.a] + age_[best.b] || around_[best.a].empty() || around_[best.b].empty())
+        continue;
+      if (!is_within(pass, best.a) || !is_within(pass, best.b)) continue;
+      Quadric sum = quadrics_[best.a];
+      sum += quadrics_[best.b];
+      if (const Vector3 to = place(best.a, best.b, sum); can_collapse(pass, best, to))
+        collapse(pass, best, to);
+    }
+  }
+
   [[nodiscard]] Vector3 at(Index v) const { return mesh_.points[v] - Point3{}; }
   [[nodiscard]] Vector3 area_of(const Names& t) const {
     return cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
   }
 
-  void offer(Index a, Index b) {
+  void offer(Pass& pass, Index a, Index b) {
+    if (!is_in(pass, a) || !is_in(pass, b)) return;
     if (!kept_.empty() && (kept_[a] != 0 || kept_[b] != 0)) return;
     Quadric sum = quadrics_[a];
     sum += quadrics_[b];
     const Vector3 to = place(a, b, sum);
     if (!is_finite(to)) return;
     const double cost = sum.at(to);
-    if (cost <= most_) queue_.push({cost, a, b, age_[a] + age_[b]});
+    if (cost <= most_) pass.queue.push({cost, a, b, age_[a] + age_[b]});
   }
   // Where the vertex goes that an edge becomes; NaN where there is no such place.
   [[nodiscard]] Vector3 place(Index a, Index b, const Quadric& sum) const {
@@ -145,14 +203,14 @@ class Simplifier {
     }
   }
 
-  [[nodiscard]] bool can_collapse(const Offer& offer, const Vector3& to) {
+  [[nodiscard]] bool can_collapse(Pass& pass, const Offer& offer, const Vector3& to) {
     // Only the two vertices across the edge are neighbours of both, and they keep three.
-    ++mark_;
-    visit_neighbours(offer.a, [&](Index v) { marks_[v] = mark_; });
+    ++pass.mark;
+    visit_neighbours(offer.a, [&](Index v) { marks_[v] = pass.mark; });
     int common = 0;
     bool keeps_three = true;
     visit_neighbours(offer.b, [&](Index v) {
-      if (marks_[v] != mark_) return;
+      if (marks_[v] != pass.mark) return;
       ++common;
       keeps_three = keeps_three && around_[v].size() > 3;
     });
@@ -173,7 +231,7 @@ class Simplifier {
     return made.empty() || std::all_of(made.begin(), made.end(), std::cref(accept_));
   }
 
-  void collapse(const Offer& offer, const Vector3& to) {
+  void collapse(Pass& pass, const Offer& offer, const Vector3& to) {
     const Index a = offer.a, b = offer.b;
     mesh_.points[a] = Point3{} + to;
     quadrics_[a] += quadrics_[b];
@@ -191,7 +249,7 @@ class Simplifier {
     }
     around_[b].clear();
     age_[a] = age_[a] + age_[b] + 1;
-    visit_neighbours(a, [&](Index v) { this->offer(std::min(a, v), std::max(a, v)); });
+    visit_neighbours(a, [&](Index v) { this->offer(pass, std::min(a, v), std::max(a, v)); });
   }
 
   ClosedMesh& mesh_;
@@ -201,9 +259,7 @@ class Simplifier {
   std::vector<std::vector<Index>> around_;  // triangles of each vertex
   std::vector<Quadric> quadrics_;
   std::vector<Index> age_;    // grows when the vertex moves: older offers are void
-  std::vector<Index> marks_;  // of vertices, for one question at a time
-  Index mark_ = 0;
-  std::priority_queue<Offer> queue_;
+  std::vector<Index> marks_;  // of vertices, for one question of a pass at a time
 };
 
 }  // namespace
@@ -249,17 +305,25 @@ bool is_manifold(const ClosedMesh& mesh) {
 }
 
 void simplify(ClosedMesh& mesh, double error, const std::function<bool(const Triangle&)>& accept,
-              std::span<const std::uint8_t> kept, const WorkMonitor& monitor) {
-  Simplifier(mesh, error, accept, kept).run(monitor);
+              std::span<const std::uint8_t> kept, int threads, const WorkMonitor& monitor) {
+  Simplifier(mesh, error, accept, kept).run(threads, monitor);
 }
 
 std::vector<Index> halve_longest_sides(ClosedMesh& mesh, std::vector<std::uint8_t>& marks) {
   const auto side = [](Index from, Index to) { return std::uint64_t{from} << 32 | to; };
-  std::unordered_map<std::uint64_t, Index> of_side;
-  of_side.reserve(3 * mesh.triangles.size());
+  // Sides between vertices of marked triangles: the others are not asked for.
+  std::vector<std::uint8_t> is_asked(mesh.points.size());
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k)
-      of_side[side(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])] = t;
+    for (const Index v : mesh.triangles[t]) {
+      if (marks[t] == 1) is_asked[v] = 1;
+    }
+  }
+  std::unordered_map<std::uint64_t, Index> of_side;
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      if (is_asked[a] != 0 && is_asked[b] != 0) of_side[side(a, b)] = t;
+    }
   }
   // The longest of all first: no triangle waits for ever while others beside it are cut.
   std::vector<std::tuple<double, Index, std::size_t>> order;

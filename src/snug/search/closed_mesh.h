@@ -27,12 +27,12 @@ void drop_unused_points(ClosedMesh& mesh);
 /// they replace, by the root of the mean square [Garland97], and `accept` is true of each triangle that is new, if it is given.
 /// Triangles do not turn by more than 60 degrees at a time. Vertices that `kept` marks stay; none does if it is empty.
 ///
-/// Guarantee: a manifold stays one. Results depend on the input alone.
+/// Guarantee: a manifold stays one. Results depend on the input alone, not on the number of threads, which all call `accept`.
 /// Requires:  a manifold; coordinates of about 1.
 /// Errors:    Interrupted.
 /// Cost:      4 microseconds a triangle.
 void simplify(ClosedMesh& mesh, double error, const std::function<bool(const Triangle&)>& accept,
-              std::span<const std::uint8_t> kept, const WorkMonitor& monitor);
+              std::span<const std::uint8_t> kept, int threads, const WorkMonitor& monitor);
 
 /// Halves the longest side of triangles that are marked with 1, the longest of all first, and the triangle across it with it, each
 /// triangle once. `marks` grows with the mesh: halves have the mark of the whole. Returns the vertices that are new, in the middles.

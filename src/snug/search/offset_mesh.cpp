@@ -140,8 +140,8 @@ class OffsetSampler {
  public:
   OffsetSampler(const PieceSet& set, const OffsetMeshOptions& options, const WorkMonitor& monitor)
       : set_(set), options_(options), monitor_(monitor) {
-    const Box3 box = box_of(set);
-    const double beyond = options.offset + 2 * options.cell;
+    const Box3 box = box_of(options.ball != nullptr ? options.ball->facets : set);
+    const double beyond = (options.ball != nullptr ? options.ball->reach : options.offset) + 2 * options.cell;
     origin_ = box.lower - Vector3{beyond, beyond, beyond};
     const double side = longest_side(box) + 2 * beyond;
     while (options.cell * std::ldexp(1.0, static_cast<int>(levels_)) < side) ++levels_;
@@ -197,16 +197,16 @@ class OffsetSampler {
   }
 
   // Of points that lie side by side in order.
-  std::vector<float> distances(std::size_t count, const std::function<Point3(std::size_t)>& point) const {
+  std::vector<float> heights(std::size_t count, const std::function<Point3(std::size_t)>& point) const {
     std::vector<float> result(count);
     constexpr std::size_t block = 256;
     parallel_for((count + block - 1) / block, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         monitor_.checkpoint();
-        QuadraticFoot foot;
+        OffsetHeight at;
         for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
-          foot = nearest_foot(set_, point(i), foot);
-          result[i] = static_cast<float>(foot.distance);
+          at = height_at(set_, options_.offset, options_.ball, point(i), at);
+          result[i] = static_cast<float>(at.height);
         }
       }
     });
@@ -219,11 +219,11 @@ class OffsetSampler {
     for (unsigned level = levels_; level > 0; --level) {
       const double side = options_.cell * std::ldexp(1.0, static_cast<int>(level));
       const std::vector<float> far =
-          distances(open.size(), [&](std::size_t i) { return place(open[i], side, 0.5); });
+          heights(open.size(), [&](std::size_t i) { return place(open[i], side, 0.5); });
       std::vector<Code> next;
       for (std::size_t i = 0; i < open.size(); ++i) {
         // Half a diagonal, and what errors of the set and of single precision come to.
-        if (std::fabs(static_cast<double>(far[i]) - options_.offset) > 0.87 * side) continue;
+        if (std::fabs(static_cast<double>(far[i])) > 0.87 * side) continue;
         const auto [x, y, z] = parts_of(open[i]);
         for (unsigned k = 0; k < 8; ++k) next.push_back(corner(code_of(2 * x, 2 * y, 2 * z), k));
       }
@@ -243,10 +243,10 @@ class OffsetSampler {
   }
   void add_values() {
     const std::size_t known = values_.size();
-    const std::vector<float> added = distances(corners_.size() - known, [&](std::size_t i) {
+    const std::vector<float> added = heights(corners_.size() - known, [&](std::size_t i) {
       return place(corners_.codes()[known + i], options_.cell, 0);
     });
-    for (const float d : added) values_.push_back(d - static_cast<float>(options_.offset));
+    values_.insert(values_.end(), added.begin(), added.end());
   }
 
   // Adds the four cubes around each edge that is crossed: distances that were found may be larger than the least, so that one was
@@ -395,12 +395,21 @@ double solid_angle(const ClosedMesh& mesh, const std::array<Index, 3>& t, const 
   return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
-// Leaves out shells that face inward, and those inside of others.
-void keep_outermost(ClosedMesh& mesh, const WorkMonitor& monitor) {
+// Does a closed mesh go around a point? Not told where it is within rounding.
+template <class Triangles>
+bool goes_around(const ClosedMesh& mesh, const Triangles& triangles, const Point3& p) {
+  double angle = 0;
+  for (const auto& t : triangles) angle += solid_angle(mesh, t, p);
+  return angle > 6.28;
+}
+
+// Leaves out shells that face inward, those inside of others, and what is where a ball's centre gets to: too far from its mesh, too, but
+// on the other side.
+void keep_outermost(ClosedMesh& mesh, const RollingBall* ball, const WorkMonitor& monitor) {
   const Shells shells(mesh);
   std::vector<double> volume(shells.count);
   std::vector<Box3> box(shells.count);
-  std::vector<std::vector<Index>> triangles(shells.count);
+  std::vector<std::vector<std::array<Index, 3>>> triangles(shells.count);
   std::vector<Point3> point(shells.count);
   for (Index i = 0; i < mesh.triangles.size(); ++i) {
     const auto& t = mesh.triangles[i];
@@ -408,21 +417,20 @@ void keep_outermost(ClosedMesh& mesh, const WorkMonitor& monitor) {
     const Point3 o = mesh.points[0];
     volume[s] += dot(mesh.points[t[0]] - o, cross(mesh.points[t[1]] - o, mesh.points[t[2]] - o));
     for (const Index v : t) box[s].add(mesh.points[v]);
-    triangles[s].push_back(i);
+    triangles[s].push_back(t);
     point[s] = mesh.points[t[0]];
   }
   const auto inside = [&](Index s, Index other) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (point[s][a] < box[other].lower[a] || point[s][a] > box[other].upper[a]) return false;
     }
-    double angle = 0;
-    for (const Index t : triangles[other]) angle += solid_angle(mesh, mesh.triangles[t], point[s]);
-    return angle > 6.28;
+    return goes_around(mesh, triangles[other], point[s]);
   };
   std::vector<std::uint8_t> kept(shells.count);
   for (Index s = 0; s < shells.count; ++s) {
     monitor.checkpoint();
-    kept[s] = volume[s] > 0;
+    kept[s] =
+        volume[s] > 0 && (ball == nullptr || goes_around(ball->around, ball->around.triangles, point[s]));
     for (Index other = 0; other < shells.count && kept[s] != 0; ++other) {
       if (other != s && volume[other] > volume[s] && inside(s, other)) kept[s] = 0;
     }
@@ -433,12 +441,38 @@ void keep_outermost(ClosedMesh& mesh, const WorkMonitor& monitor) {
 
 }  // namespace
 
+RollingBall::RollingBall(ClosedMesh mesh, double how_far, int threads)
+    : around(std::move(mesh)), reach(how_far) {
+  std::vector<QuadraticTriangle> all;
+  all.reserve(around.triangles.size());
+  for (const auto& [a, b, c] : around.triangles) {
+    all.push_back(flat_quadratic({around.points[a], around.points[b], around.points[c]}));
+  }
+  facets = PieceSet(std::move(all));
+  facets.prepare(threads);
+}
+
+OffsetHeight height_at(const PieceSet& set, double offset, const RollingBall* ball, const Point3& p,
+                       const OffsetHeight& hint) {
+  OffsetHeight at;
+  at.height = INFINITY;
+  if (ball != nullptr) {
+    at.centre = nearest_foot(ball->facets, p, hint.centre);
+    at.height = ball->reach - at.centre.distance;
+    // Nowhere is a distance less.
+    if (at.height <= -offset) return at;
+  }
+  at.foot = nearest_foot(set, p, hint.foot);
+  at.height = std::min(at.height, at.foot.distance - offset);
+  return at;
+}
+
 std::optional<ClosedMesh> offset_mesh(const PieceSet& set, const OffsetMeshOptions& options,
                                       const WorkMonitor& monitor) {
   OffsetSampler sampler(set, options, monitor);
   if (!sampler.sample()) return std::nullopt;
   ClosedMesh mesh = sampler.mesh();
-  keep_outermost(mesh, monitor);
+  keep_outermost(mesh, options.ball, monitor);
   return mesh;
 }
 
