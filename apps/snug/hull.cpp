@@ -1,5 +1,6 @@
 #include <snug/hull.h>
 
+#include <algorithm>
 #include <deque>
 
 #include <fmt/core.h>
@@ -61,6 +62,12 @@ void write_summary(Report& report, const Options& options, const Surface& surfac
     report.text("the surface is open: the hulls are sheets behind and in front of it, not solids");
   }
   write_verdict(report, found, surface.traits().owner());
+  // Of surfaces through themselves each place says so.
+  if (found.outcome != Outcome::complete &&
+      std::none_of(found.problems.begin(), found.problems.end(),
+                   [](const HullProblem& p) { return p.fault == HullFault::through_itself; })) {
+    report.text("snug envelope makes one closed mesh around a surface of any sort, within an error too");
+  }
 }
 
 ExitStatus run(const Options& options) {

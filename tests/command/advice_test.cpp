@@ -188,6 +188,7 @@ TEST_F(advice, of_a_hull_says_that_a_saddle_corner_has_none_and_the_envelope_is_
   EXPECT_NE((outcome.out + outcome.err).find("not at a spike, a fold or a saddle-shaped corner"),
             std::string::npos)
       << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("snug envelope"), std::string::npos) << outcome.out;
   EXPECT_EQ(run_snug({"envelope", saddle, "--scheme", "flat", "--error", "0.05", "-o", out}).status, 0);
 }
 

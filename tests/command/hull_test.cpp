@@ -234,6 +234,54 @@ TEST(envelope, tells_whether_a_part_is_inside) {
   EXPECT_NE(outcome.out.find("is outside the envelope"), std::string::npos) << outcome.out;
 }
 
+TEST(envelope, closes_holes_up_to_a_gap_and_says_how_far_off_it_is_there) {
+  const TemporaryFolder folder;
+  // A square tube, open at both ends.
+  const std::string open = write(folder, "tube.obj",
+                                 "v 0 0 0\nv .2 0 0\nv .2 .2 0\nv 0 .2 0\nv 0 0 1\nv .2 0 1\nv .2 .2 1\n"
+                                 "v 0 .2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string file = folder.file("a.ply");
+  const std::vector<std::string> words{"envelope", open, "--scheme", "bilinear", "--error", "2%", "-o", file};
+  const auto with_gap = [&](const std::string& gap) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--gap", gap});
+    return all;
+  };
+  const json thin = answer(words), filled = answer(with_gap("24%"));
+  EXPECT_FALSE(thin.contains("bridges"));
+  EXPECT_LT(thin["volume"][1], 0.03);
+  EXPECT_GT(filled["volume"][0], 0.04);
+  EXPECT_EQ(filled["bridges"]["gap"], 0.24);
+  EXPECT_GT(filled["bridges"]["triangles"], 0);
+  EXPECT_GT(filled["bridges"]["distance"], filled["error"]);
+  EXPECT_EQ(filled["bridges"]["distance"], filled["envelope"]["gap"]);
+  EXPECT_NE(run_snug(with_gap("24%")).out.find("ball of diameter 0.24"), std::string::npos);
+  expect_refused(with_gap("3%"), 4, "twice the error");
+  expect_refused(with_gap("a"), 2, "--gap");
+}
+
+TEST(envelope, of_a_scene_is_around_all_of_its_parts) {
+  const TemporaryFolder folder;
+  json scene{{"parts", json::array()}};
+  scene["parts"].push_back({{"mesh", model("bracket.obj")}});
+  scene["parts"].push_back({{"mesh", model("pin.obj")}, {"place", {{"move", {3, 0, 0}}}}});
+  const std::string name = folder.file("scene.json"), file = folder.file("a.ply");
+  std::ofstream(name) << scene.dump();
+  const json found = answer({"envelope", "--scene", name, "--error", "2%", "-o", file});
+  EXPECT_EQ(found["outcome"], "complete");
+  EXPECT_EQ(found["scene"], name);
+  EXPECT_EQ(found["mesh"].size(), 2);
+  // Percent of the box around both, which is longer than either.
+  EXPECT_GT(found["error"], 0.06);
+  for (const auto& [mesh, move] : {std::pair{model("bracket.obj"), "0 0 0"}, {model("pin.obj"), "3 0 0"}}) {
+    const json in = answer({"collide", file, mesh, "--move-b", move, "--scheme-a", "flat", "--solid",
+                            "--tolerance", "0", "--margin", "0"});
+    EXPECT_EQ(in["verdict"], "intersecting") << mesh;
+    EXPECT_EQ(in["contained"], "b") << mesh;
+  }
+  expect_refused({"envelope", model("pin.obj"), "--scene", name, "--error", "1%", "-o", file}, 2, "exclude");
+}
+
 TEST(envelope, says_what_is_wrong) {
   const TemporaryFolder folder;
   const std::string file = folder.file("a.stl");
