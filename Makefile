@@ -135,6 +135,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/draw_meshes build/release/bin/snug docs/pictures
+	@[ ! -x build/release/bin/bench_wraps ] || scripts/draw_wraps build/release/bin/snug build/release/bin/bench_wraps docs/pictures  # with CGAL, by make bench
 	@scripts/draw_nodal build/release/bin/snug docs/pictures
 	@scripts/draw_rays build/release/bin/snug docs/pictures
 	@scripts/draw_independence build/release/bin/snug-research docs/pictures
