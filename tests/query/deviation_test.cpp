@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/evaluate.h>
+#include <snug/tessellate.h>
 #include <support/error.h>
 #include <testing/candidates.h>
 #include <testing/tagged.h>
@@ -146,6 +147,24 @@ TEST(deviation, of_a_tessellation_is_small_and_that_of_the_control_mesh_is_known
       expect_distance(cage.from_candidate, std::sqrt(3.0) * off, 1e-5);
     }
     EXPECT_GT(cage.from_candidate.distance.lower, 0.1);
+  }
+}
+
+// Bent pieces that come back to where they were: corners beside each other have their feet on different sheets of them.
+TEST(deviation, is_narrow_where_a_plane_surface_comes_back) {
+  oracle::TaggedMesh l;
+  l.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}};
+  l.polygons = {{0, 1, 2, 3, 4, 5}};
+  for (const Scheme scheme : {Scheme::catmark, Scheme::bilinear}) {
+    const Surface surface = surface_of(l, scheme);
+    const Tessellation fine = tessellate(surface, {.error = 5e-3});
+    std::vector<Triangle> candidate;
+    for (const auto& t : fine.triangles)
+      candidate.push_back({fine.positions[t[0]], fine.positions[t[1]], fine.positions[t[2]]});
+    const Deviation found = deviation(surface, candidate, {}, {.max_splits = 500'000});
+    EXPECT_EQ(found.outcome, Outcome::complete);
+    EXPECT_LT(found.from_surface.distance.upper, fine.error_bound + 2e-4);
+    EXPECT_LT(found.from_candidate.distance.upper, fine.error_bound + 2e-4);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -106,6 +108,30 @@ TEST(feet, feet_on_triangles_are_the_nearest) {
     const Point3 p = Point3{} + draw.vector(2);
     QuadraticFoot foot = foot_on(set, 0, p);
     EXPECT_NEAR(certain_distance(set, p, 0, foot), foot.distance, 1e-11);
+  }
+}
+
+// Corners at the same point, on a line, and nearly so, in any order.
+TEST(feet, feet_on_narrow_triangles_are_the_nearest) {
+  Draw draw(6);
+  constexpr std::array widths{0.0, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2};
+  for (std::size_t i = 0; i < 20'000; ++i) {
+    const double width = widths[i % widths.size()];
+    const Point3 o = Point3{} + draw.vector(1);
+    const Vector3 along = draw.vector(1);
+    const double share = std::array{0.0, 1.0, 1e-8, 0.25, -0.5, 1.5, draw.unit()}[draw.below(7)];
+    std::array<Point3, 3> corners{o, o + along, (o + share * along) + draw.vector(width)};
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(draw.below(3)), corners.end());
+    if (draw.below(2) == 0) std::swap(corners[0], corners[1]);
+    const std::vector<QuadraticTriangle> one{flat_quadratic(corners)};
+    PieceSet set(one);
+    set.prepare(1);
+    const double near = std::array{1e-5, 1e-2, 2.0}[draw.below(3)];
+    const Point3 p = point_of(one[0], draw.parameter()) + draw.vector(near);
+    QuadraticFoot foot = foot_on(set, 0, p);
+    // A foot off by roundings turns the plane the more the nearer p is.
+    EXPECT_NEAR(certain_distance(set, p, 0, foot), foot.distance, near < 1e-3 ? 1e-5 : 1e-7)
+        << width << ' ' << share << ' ' << near;
   }
 }
 

@@ -31,7 +31,8 @@ struct Comparison {
   double upper = INFINITY;      // all its points are at most this far from the other set
   double geometric = INFINITY;  // without the errors of the quadratics
   double errors = 0;
-  std::size_t edge = 0;  // where to cut, from corner `edge` to the next
+  double at_corners = 0, bent = 0;  // largest distance of a corner, of a middle
+  std::size_t edge = 0;             // where to cut, from corner `edge` to the next
   double share = 0.5;
 };
 
@@ -174,7 +175,8 @@ class Chunk {
     const double before = foot.distance;
     raise_lower_end(point, {part.piece, part.at[k]}, other_, options_, foot, found_);
     if (foot.distance < before) {
-      part.feet[k] = foot_on(other_, foot.piece, quadratic_.corners[k]);
+      foot.distance = distance(foot.point, quadratic_.corners[k]);
+      part.feet[k] = foot;
       part.tried = static_cast<std::uint8_t>(part.tried & ~(1u << k));
     }
     return true;
@@ -184,44 +186,62 @@ class Chunk {
   void compare(Part& part) {
     now_ = {};
     std::array<std::array<double, 3>, 3> to_piece{};  // distances of corners to the piece below corner i
-    std::size_t best = 0, different = 0;
-    double bent = 0, corner = 0;
+    std::size_t different = 0;
+    bool torn = false;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t piece = part.feet[i].piece;
-      if ((i > 0 && piece == part.feet[0].piece) || (i == 2 && piece == part.feet[1].piece)) {
-        to_piece[i] = to_piece[piece == part.feet[0].piece ? 0 : 1];
-        continue;
-      }
-      ++different;
+      const bool known = (i > 0 && piece == part.feet[0].piece) || (i == 2 && piece == part.feet[1].piece);
+      if (known) to_piece[i] = to_piece[piece == part.feet[0].piece ? 0 : 1];
+      if (known && !torn) continue;
+      different += !known;
       std::array<QuadraticFoot, 3> feet = part.feet;
       for (std::size_t k = 0; k < 3; ++k) {
         if (feet[k].piece != piece) feet[k] = foot_on(other_, piece, quadratic_.corners[k]);
-        to_piece[i][k] = feet[k].distance;
+        if (!known) to_piece[i][k] = feet[k].distance;
       }
-      const QuadraticTriangle there = below(other_, feet);
-      double at_corners = 0;
-      std::array<double, 3> at_middles;
-      for (std::size_t k = 0; k < 3; ++k) {
-        at_corners = std::max(at_corners, feet[k].distance);
-        at_middles[k] = distance(quadratic_.middles[k], there.middles[k]);
+      // From one foot nothing is farther than the part is large beyond its own distance. If the piece's part below is, it comes back
+      // to where it was, and feet are on different sheets of it.
+      torn = farthest_from(part.feet[i].point) < compare_with(part, feet);
+      if (torn) {
+        compare_with(part, {part.feet[i], part.feet[i], part.feet[i]});
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (k != i) feet[k] = foot_beside(other_, part.feet[i], quadratic_.corners[k]);
+        }
+        compare_with(part, feet);
       }
-      const double geometric = std::max({at_corners, at_middles[0], at_middles[1], at_middles[2]});
-      const double errors = set_[part.piece].error + other_[piece].error;
-      const double upper = enlarged(geometric + errors) + distance_rounding;
-      if (upper < now_.upper) {
-        now_.upper = upper;
-        now_.geometric = geometric;
-        now_.errors = errors;
-        best = static_cast<std::size_t>(std::max_element(at_middles.begin(), at_middles.end()) -
-                                        at_middles.begin());
-        bent = at_middles[best];
-        corner = at_corners;
-      }
-      if (upper <= goal()) break;
+      if (now_.upper <= goal()) break;
     }
     part.upper = std::min(part.upper, now_.upper);
-    now_.edge = best;
-    if (different > 1 && corner >= bent * (1 - 0x1p-20)) choose_border(part, to_piece);
+    if (different > 1 && now_.at_corners >= now_.bent * (1 - 0x1p-20)) choose_border(part, to_piece);
+  }
+
+  // With the part of a piece whose corners are `feet`. How far are both apart?
+  double compare_with(const Part& part, std::array<QuadraticFoot, 3> feet) {
+    for (std::size_t k = 0; k < 3; ++k) feet[k].distance = distance(feet[k].point, quadratic_.corners[k]);
+    const QuadraticTriangle there = below(other_, feet);
+    const double at_corners = std::max({feet[0].distance, feet[1].distance, feet[2].distance});
+    std::array<double, 3> at_middles;
+    for (std::size_t k = 0; k < 3; ++k) at_middles[k] = distance(quadratic_.middles[k], there.middles[k]);
+    const auto most = std::max_element(at_middles.begin(), at_middles.end());
+    const double geometric = std::max(at_corners, *most),
+                 errors = set_[part.piece].error + other_[feet[0].piece].error,
+                 upper = enlarged(geometric + errors) + distance_rounding;
+    if (upper < now_.upper) {
+      now_ = {.upper = upper,
+              .geometric = geometric,
+              .errors = errors,
+              .at_corners = at_corners,
+              .bent = *most,
+              .edge = static_cast<std::size_t>(most - at_middles.begin())};
+    }
+    return geometric;
+  }
+
+  // Of the part's points from a point.
+  [[nodiscard]] double farthest_from(const Point3& point) const {
+    double most = 0;
+    for (const Point3& p : points_of(quadratic_)) most = std::max(most, distance(p, point));
+    return most;
   }
 
   // Where an edge leaves the piece below one end for that below the other: exact where both lie in a plane.

@@ -47,9 +47,8 @@ bool is_curved(const QuadraticTriangle& q) {
 
 double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
 
-// The foot on a flat triangle [Ericson05, sec. 5.1.5], by the regions of its plane; a needle may be answered
-// badly, which costs time only.
-TriangleParameter flat_foot(const Point3& a, const Point3& b, const Point3& c, const Point3& p) {
+// The foot on a flat triangle [Ericson05, sec. 5.1.5], by the regions of its plane.
+TriangleParameter foot_by_regions(const Point3& a, const Point3& b, const Point3& c, const Point3& p) {
   const Vector3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return {0, 0};
@@ -73,6 +72,53 @@ TriangleParameter flat_foot(const Point3& a, const Point3& b, const Point3& c, c
   if (!(sum > 0)) return {0, 0};
   const double u = clamped(vb / sum);
   return {u, std::min(clamped(vc / sum), 1 - u)};
+}
+
+// The same where the triangle is narrow or without area: on each edge, and inside by the longest one and what is across it.
+TriangleParameter narrow_foot(const Triangle& t, const Point3& p) {
+  std::size_t first = 0;  // of the longest edge
+  double longest = -1;
+  std::array<double, 3> best{1, 0, 0};
+  double least = INFINITY;
+  const auto see = [&](const std::array<double, 3>& weights) {
+    const double square = length_sq((t[0] - p) + weights[1] * (t[1] - t[0]) + weights[2] * (t[2] - t[0]));
+    if (!(square < least)) return;
+    least = square;
+    best = weights;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vector3 edge = t[next] - t[k];
+    const double square = length_sq(edge), share = square > 0 ? clamped(dot(edge, p - t[k]) / square) : 0;
+    std::array<double, 3> weights{};
+    weights[k] = 1 - share;
+    weights[next] = share;
+    see(weights);
+    if (square > longest) {
+      longest = square;
+      first = k;
+    }
+  }
+  const std::size_t next = (first + 1) % 3, third = (first + 2) % 3;
+  const Vector3 along = normalized(t[next] - t[first]), to_third = t[third] - t[first],
+                across = to_third - dot(to_third, along) * along;
+  const double off = dot(p - t[first], across) / length_sq(across);
+  const double share = dot((p - t[first]) - off * to_third, along) / std::sqrt(longest);
+  if (off > 0 && share > 0 && off + share < 1) {
+    std::array<double, 3> weights{};
+    weights[first] = 1 - off - share;
+    weights[next] = share;
+    weights[third] = off;
+    see(weights);
+  }
+  return {best[1], std::min(best[2], 1 - best[1])};
+}
+
+TriangleParameter flat_foot(const Point3& a, const Point3& b, const Point3& c, const Point3& p) {
+  const Vector3 ab = b - a, ac = c - a;
+  const double longest = std::max({length_sq(ab), length_sq(ac), length_sq(c - b)});
+  const bool narrow = !(length_sq(cross(ab, ac)) > 0x1p-20 * longest * longest);
+  return narrow ? narrow_foot({a, b, c}, p) : foot_by_regions(a, b, c, p);
 }
 
 TriangleParameter into_triangle(double u, double v) {
@@ -147,9 +193,37 @@ TriangleParameter curved_foot(const QuadraticTriangle& q, const Point3& p, Trian
   return best;
 }
 
+// Does a quadratic bend, or are its parameters uneven, by a good part of its size? Newton's method then depends on where it begins.
+bool bends_much(const QuadraticTriangle& q) {
+  double longest = 0, most = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    longest = std::max(longest, length_sq(q.corners[(k + 1) % 3] - q.corners[k]));
+    most = std::max(most, length_sq(bend(q, k)));
+  }
+  return most > 0x1p-6 * longest;
+}
+
+TriangleParameter between(const Corners& at, TriangleParameter t) {
+  const double w = 1 - t.u - t.v;
+  return into_triangle(w * at[0].u + t.u * at[1].u + t.v * at[2].u,
+                       w * at[0].v + t.u * at[1].v + t.v * at[2].v);
+}
+
 TriangleParameter foot_of(const QuadraticTriangle& q, bool curved, const Point3& p) {
-  const TriangleParameter flat = flat_foot(q.corners[0], q.corners[1], q.corners[2], p);
-  return curved ? curved_foot(q, p, flat) : flat;
+  TriangleParameter first = flat_foot(q.corners[0], q.corners[1], q.corners[2], p);
+  if (!curved) return first;
+  if (bends_much(q)) {
+    double least = distance(point_of(q, first), p);
+    for (const Corners& quarter : quarters(whole_triangle)) {
+      const TriangleParameter at = between(
+          quarter, flat_foot(point_of(q, quarter[0]), point_of(q, quarter[1]), point_of(q, quarter[2]), p));
+      if (const double here = distance(point_of(q, at), p); here < least) {
+        least = here;
+        first = at;
+      }
+    }
+  }
+  return curved_foot(q, p, first);
 }
 
 // The hull of the points is at least this far from p: a plane across the direction to a point nearby.
@@ -222,6 +296,17 @@ QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p)
   return foot;
 }
 
+QuadraticFoot foot_beside(const PieceSet& set, const QuadraticFoot& foot, const Point3& p) {
+  const QuadraticTriangle& q = set[foot.piece];
+  QuadraticFoot beside = foot;
+  if (is_curved(q)) {
+    beside.at = curved_foot(q, p, foot.at);
+    beside.point = point_of(q, beside.at);
+  }
+  beside.distance = distance(beside.point, p);
+  return beside;
+}
+
 QuadraticTriangle below(const PieceSet& set, const std::array<QuadraticFoot, 3>& feet) {
   const QuadraticTriangle& q = set[feet[0].piece];
   QuadraticTriangle part{{feet[0].point, feet[1].point, feet[2].point}, {}, q.error};
@@ -263,12 +348,8 @@ double certain_distance_of(const QuadraticTriangle& q, std::uint32_t piece, cons
     open.pop_back();
     const TriangleParameter near = foot_of(next.part, curved, p);
     const Point3 point = point_of(next.part, near);
-    if (const double between = distance(point, p); between < foot.distance) {
-      const double w = 1 - near.u - near.v;
-      foot = {piece,
-              into_triangle(w * next.at[0].u + near.u * next.at[1].u + near.v * next.at[2].u,
-                            w * next.at[0].v + near.u * next.at[1].v + near.v * next.at[2].v),
-              point, between};
+    if (const double here = distance(point, p); here < foot.distance) {
+      foot = {piece, between(next.at, near), point, here};
     }
     const double lower = plane_distance(next.part, p, point);
     if (!curved || lower >= foot.distance - gap || lower - q.error >= least || splits >= max_splits) {

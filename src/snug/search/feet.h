@@ -38,6 +38,9 @@ struct QuadraticFoot {
 
 /// A point on one piece near p: exact up to rounding on a flat one, by Newton's method on others.
 [[nodiscard]] QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p);
+/// A point near p on the piece of another point's foot, by Newton's method from that: on the same sheet of a piece that comes back to where it
+/// was, if both points are near each other.
+[[nodiscard]] QuadraticFoot foot_beside(const PieceSet& set, const QuadraticFoot& foot, const Point3& p);
 /// The part of a piece whose corners are three feet on it.
 /// Requires:  feet of the same piece.
 [[nodiscard]] QuadraticTriangle below(const PieceSet& set, const std::array<QuadraticFoot, 3>& feet);
