@@ -49,6 +49,7 @@ PYBIND11_MODULE(_snug, module) {
   add_errors(module);
   add_surface(module);
   add_pair_queries(module);
+  add_motions(module);
   add_signatures(module);
   zero_what_is_not_made(module);
 }

@@ -11,6 +11,7 @@
 #include "certificate.h"
 #include "poses.h"
 #include "surface.h"
+#include "witness.h"
 
 namespace snug::python {
 namespace {
@@ -141,19 +142,6 @@ std::string note_of(Outcome outcome) {
 }
 
 // Members that Collision and Distance have in common.
-
-const WitnessPoints* witness_of(const Collision& answer) {
-  return answer.witness ? &*answer.witness : nullptr;
-}
-const WitnessPoints* witness_of(const Distance& answer) { return &answer.witness; }
-
-template <class T>
-std::array<std::optional<Place>, 2> places_of(const T& answer) {
-  const WitnessPoints* const points = witness_of(answer);
-  if (points == nullptr) return {};
-  return {(*points)[0].at, (*points)[1].at};
-}
-
 template <class T>
 void add_common(AnswerClass<T>& answers) {
   answers
@@ -162,64 +150,12 @@ void add_common(AnswerClass<T>& answers) {
           "Lower end of the interval that contains the distance, (n,), mesh units.")
       .view(
           "upper", [](const T& t) -> const double& { return t.distance.upper; },
-          "Upper end of it, (n,), mesh units; infinite if no pair of points was near enough to matter.")
-      .template array<double>(
-          "points", {2, 3},
-          [](const T& t, double* out) {
-            const WitnessPoints* const points = witness_of(t);
-            for (std::size_t s = 0; s < 2; ++s) {
-              for (std::size_t k = 0; k < 3; ++k) *out++ = points ? (*points)[s].point[k] : nan;
-            }
-          },
-          "The two closest points found, on A and on B, (n, 2, 3), world coordinates; NaN if there are none.")
-      .template array<double>(
-          "error", {},
-          [](const T& t, double* out) {
-            const WitnessPoints* const points = witness_of(t);
-            *out = points ? std::max((*points)[0].error, (*points)[1].error) : 0;
-          },
-          "Upper bound, per coordinate, of the distance from a point to the limit point that it stands for, "
-          "(n,).")
-      .template array<std::int64_t>(
-          "faces", {2},
-          [](const T& t, std::int64_t* out) {
-            for (const auto& at : places_of(t)) *out++ = at ? std::int64_t{at->owner} : -1;
-          },
-          "Faces of the points (of dual schemes vertices), (n, 2) int64; -1 where a point was located on the "
-          "other surface only.")
-      .template array<std::int64_t>(
-          "corners", {2},
-          [](const T& t, std::int64_t* out) {
-            for (const auto& at : places_of(t)) *out++ = at ? std::int64_t{at->corner} : -1;
-          },
-          "Corners of these faces that the parameters belong to, (n, 2) int64; -1 likewise.")
-      .template array<double>(
-          "parameters", {2, 2},
-          [](const T& t, double* out) {
-            for (const auto& at : places_of(t)) {
-              *out++ = at ? at->u : nan;
-              *out++ = at ? at->v : nan;
-            }
-          },
-          "Parameters u, v of the points, (n, 2, 2); NaN likewise.")
-      .template array<std::int64_t>(
-          "contained", {},
-          [](const T& t, std::int64_t* out) {
-            *out = t.contained ? static_cast<std::int64_t>(*t.contained) : -1;
-          },
-          "With solid=True: 0 if a point of A's surface lies inside B, 1 the other way round, else -1, (n,) "
-          "int64.")
-      .list(
-          "stats",
-          [](const T& t) {
-            py::dict stats;
-            stats["box_tests"] = t.stats.box_tests;
-            stats["triangle_tests"] = t.stats.triangle_tests;
-            stats["evaluations"] = t.stats.evaluations;
-            stats["splits"] = t.stats.splits;
-            return stats;
-          },
-          "The work that was done, as a dict; of many answers a list.");
+          "Upper end of it, (n,), mesh units; infinite if no pair of points was near enough to matter.");
+  add_witness(
+      answers,
+      "The two closest points found, on A and on B, (n, 2, 3), world coordinates; NaN if there are none.");
+  add_contained(answers);
+  add_stats(answers);
 }
 
 bool colliding(const Collision& answer) {

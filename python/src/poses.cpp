@@ -142,7 +142,10 @@ Motion Poses::mended(std::size_t i, std::string_view fault) const {
 py::object matrix_of_pose(const py::object& given, const std::string& name, const py::object& rigid) {
   const Poses poses(given, name.c_str(), rigid);
   if (poses.count()) refuse(name + ": give one pose");
-  const Motion motion = poses.at(0);
+  return matrix_of(poses.at(0));
+}
+
+py::object matrix_of(const Motion& motion) {
   py::array_t<double> result({4, 4});
   std::ranges::copy(motion.numbers(), result.mutable_data());
   std::ranges::copy(std::array{0.0, 0.0, 0.0, 1.0}, result.mutable_data() + 12);

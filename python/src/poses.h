@@ -53,6 +53,9 @@ class Poses {
 [[nodiscard]] py::object matrix_of_pose(const py::object& given, const std::string& name,
                                         const py::object& rigid);
 
+/// The twelve numbers and 0 0 0 1, (4, 4).
+[[nodiscard]] py::object matrix_of(const Motion& motion);
+
 /// The poses of both sides; one on one side stands beside each of the other's.
 /// Errors:    ValueError where their numbers differ.
 [[nodiscard]] std::optional<std::size_t> common_count(const Poses& a, const Poses& b);

@@ -71,8 +71,10 @@ void add_signatures(const py::module_& module) {
     if (!py::isinstance<py::type>(thing)) continue;
     for (const auto& item : py::dict(thing.attr("__dict__"))) {
       const auto member = item.first.cast<std::string>();
+      const bool is_static = PyObject_TypeCheck(item.second.ptr(), &PyStaticMethod_Type) != 0;
       if (member == "__init__") sign_class(thing);
-      if (!member.starts_with("_") || member == "__init__") sign(item.second);
+      if (!member.starts_with("_") || member == "__init__")
+        sign(is_static ? py::object(item.second.attr("__func__")) : item.second);
     }
   }
 }

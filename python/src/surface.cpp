@@ -549,6 +549,7 @@ void add_surface(py::module_& module) {
              "Raises FileError (.filename, .line), MeshError, ValueError.");
   add_point_queries(surface, module);
   add_shapes(surface, module);
+  add_contacts(surface, module);
 }
 
 }  // namespace snug::python

@@ -61,6 +61,8 @@ void add_surface(py::module_& module);
 void add_pair_queries(py::module_& module);
 void add_point_queries(py::class_<PySurface>& surface, py::module_& module);
 void add_shapes(py::class_<PySurface>& surface, py::module_& module);
+void add_contacts(py::class_<PySurface>& surface, py::module_& module);
+void add_motions(py::module_& module);
 
 /// Raises snug.UndecidedError.
 [[noreturn]] void refuse_undecided(const std::string& message);

@@ -70,6 +70,39 @@ def test_solids_and_options():
     same_pair(document, snug.distance(a, b, relative=1e-6))
 
 
+def test_motions(tmp_path):
+    files = MODELS / "bracket.obj", MODELS / "pin.obj"
+    a, b = map(snug.read, files)
+    poses = [moved(0, 0, 2), turned(30, 0.1, 0, 1), turned(80, 0, 0, 0.2)]
+    (tmp_path / "path.txt").write_text("".join(text(pose) + "\n" for pose in poses))
+    for document, answer in (
+        (output_of("time-of-contact", *files, "--path-b", tmp_path / "path.txt"), snug.time_of_contact(a, None, b, poses)),
+        (
+            output_of("time-of-contact", *files, "--place-b", text(poses[0]), "--velocity-b", "0 0 -2", "--solid"),
+            snug.time_of_contact(a, None, b, snug.Trajectory.steady(poses[0], velocity=[0, 0, -2]), solid=True),
+        ),
+    ):
+        assert [document["verdict"], document["outcome"], document["steps"]] == [answer.verdict, answer.outcome, answer.steps]
+        same_pair({**document, "distance": document["time"]}, answer)
+
+
+@pytest.mark.parametrize("scheme", ["catmark", "bilinear", "midedge"])
+def test_self_contact(scheme, tmp_path):
+    file = tmp_path / "two.obj"
+    box = [[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]]
+    corners = box + (np.array(box) + 0.4).tolist()
+    file.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join(
+        f"f {a} {b} {c} {d}\n" for a, b, c, d in faces + (np.array(faces) + 8).tolist()))
+    document, answer = output_of("self-contact", file, "--scheme", scheme), snug.read(file, scheme=scheme).self_contact()
+    assert [document["verdict"], document["outcome"], document["stats"]] == [answer.verdict, answer.outcome, answer.stats]
+    pairs = document["pairs"]
+    assert [p["witness"] for p in pairs] == answer.pairs.points.tolist() and len(pairs) > 0
+    assert [p["distance"] for p in pairs] == np.column_stack([answer.pairs.lower, answer.pairs.upper]).tolist()
+    assert [[at.get("face", at.get("vertex")) for at in p["at"]] for p in pairs] == answer.pairs.faces.tolist()
+    assert [p["touching"] for p in pairs] == answer.pairs.touching.tolist()
+
+
 @pytest.mark.parametrize("name", ["bracket", "pawn"])
 @pytest.mark.parametrize("scheme", ["auto", "doo-sabin"])
 def test_one_surface(name, scheme, tmp_path):

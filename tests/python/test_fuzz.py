@@ -78,6 +78,15 @@ def test_poses(a, b):
             assert (np.asarray(hit.lower) <= hit.upper).all()
 
 
+@given(anything, anything, anything)
+def test_motions(a, b, c):
+    path = attempt(lambda: snug.Trajectory.steady(a, velocity=b, radians=0.5, about=c))
+    for motion in (a, path):
+        first = attempt(lambda: snug.time_of_contact(SOLID, None, SOLID, motion, max_splits=2000))
+        if first is not None:
+            assert first.lower <= first.upper
+
+
 @given(anything, anything, st.sampled_from(["nearest", "any", "all"]), st.booleans())
 def test_rays(origins, directions, query, certified):
     attempt(lambda: SOLID.ray(origins, directions, query=query, certified=certified, max_splits=100))
@@ -135,6 +144,8 @@ def test_options(a, b, c):
     attempt(lambda: SOLID.tessellate(a, max_edge=b, view=(b, c), max_triangles=c, max_splits=1000))
     attempt(lambda: SOLID.hull(a, max_splits=100))
     attempt(lambda: snug.deviation(SOLID, a, max_splits=100))
+    attempt(lambda: SOLID.self_contact(within=a, radius=b, levels=c, max_splits=100))
+    attempt(lambda: snug.time_of_contact(SOLID, None, SOLID, [moved(3), moved()], tolerance=a, max_splits=2000))
     attempt(lambda: SOLID.update(a))
     attempt(lambda: snug.Surface(CUBE, CUBE_FACES, scheme=a, boundary=b, crease_method=c))
     attempt(lambda: snug.Surface(CUBE, CUBE_FACES, sharp=a, weld=b, smooth_triangles=c))

@@ -1,0 +1,88 @@
+"""Surfaces that move, surfaces that meet themselves, and how far they are from their faces."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import snug
+from conftest import CUBE, CUBE_FACES, moved, turned
+
+ABOVE = moved(0, 0, 2)
+
+
+def test_the_first_contact_is_not_before_the_lower_end(bracket, pin):
+    path = snug.Trajectory.steady(ABOVE, velocity=[0, 0, -2], radians=0.2, about=[0, 0, 2])
+    first = snug.time_of_contact(bracket, None, pin, path)
+    assert first and first.verdict == "intersecting" and 0 < first.lower < first.upper < 1 and first.steps > 1
+    for time in np.linspace(0, first.lower, 20):
+        assert snug.distance(bracket, pin, pose_b=path.at(time)).lower > 0
+    at_end = snug.collide(bracket, pin, pose_b=path.at(first.upper))
+    assert at_end.colliding and first.points.shape == (2, 3) and np.abs(first.points[0] - first.points[1]).max() < 0.01
+    assert first.stats["splits"] > 0 and repr(first).startswith("<snug.TimeOfContact intersecting, time 0.5")
+    assert pickle.loads(pickle.dumps(first)).lower == first.lower
+
+
+def test_what_misses_and_what_is_not_decided(bracket, pin):
+    aside = snug.time_of_contact(bracket, None, pin, [moved(9), moved(9, 0, -3)])
+    assert aside.verdict == "separated" and not aside and aside.lower == 1 and aside.upper == np.inf
+    undecided = snug.time_of_contact(bracket, moved(), pin, [ABOVE, moved()], max_splits=2000, tolerance=0)
+    with pytest.raises(snug.UndecidedError):
+        bool(undecided)
+    assert undecided.outcome == "budget-spent"
+
+
+def test_forms_of_motion(bracket, pin):
+    poses = [ABOVE, turned(90, 0, 0, 1), moved(0, 0, 0.5)]
+    through = snug.Trajectory.through(poses)
+    assert through.duration == 2 and repr(through) == "<snug.Trajectory of duration 2>"
+    for time, pose in enumerate(poses):
+        np.testing.assert_allclose(through.at(time), pose, atol=1e-15)
+    expected = snug.time_of_contact(bracket, None, pin, through)
+    for form in (poses, np.array(poses), [(pose[:3, :3], pose[:3, 3]) for pose in poses]):
+        same = snug.time_of_contact(bracket, np.eye(4), pin, form)
+        assert [same.lower, same.upper] == [expected.lower, expected.upper]
+    back = snug.time_of_contact(pin, through, bracket, None)
+    assert back.verdict == expected.verdict
+    # A spin about a moving point: half a turn and half a step.
+    spin = snug.Trajectory.steady(velocity=[1, 0, 0], radians=np.pi, about=[0, 1, 0])
+    np.testing.assert_allclose(spin.at(1) @ [0, 0, 0, 1], [1, 2, 0, 1], atol=1e-15)
+    with pytest.raises(ValueError, match="different times"):
+        snug.time_of_contact(bracket, poses, pin, poses[:2])
+    with pytest.raises(ValueError, match="motion_b"):
+        snug.time_of_contact(bracket, None, pin, np.empty((0, 4, 4)))
+    with pytest.raises(snug.PoseError, match="motion_b"):
+        snug.time_of_contact(bracket, None, pin, [moved(), turned(180)])
+    with pytest.raises(ValueError, match="velocity"):
+        snug.Trajectory.steady(velocity=[[1, 2, 3]])
+    with pytest.raises(ValueError, match="time"):
+        through.at(3)
+
+
+def test_a_surface_and_itself(cube):
+    clear = cube.self_contact()
+    assert clear.verdict == "clear" and not clear and clear.outcome == "complete" and len(clear.pairs) == 0
+    assert clear.pairs.points.shape == (0, 2, 3) and clear.stats["stars"] > 0 and clear.radius == 0
+    near = cube.self_contact(within="60%", radius="130%")
+    assert near.radius == pytest.approx(1.3 * cube.size) and near.verdict in ("clear", "near", "undecided")
+    two = np.vstack([CUBE, np.add(CUBE, 0.4)])
+    faces = [list(face) for face in CUBE_FACES]
+    met = snug.Surface(two, faces + [[v + 8 for v in face] for face in faces], scheme="bilinear").self_contact()
+    assert met and met.verdict == "intersecting" and len(met.pairs) == len(met.pairs.verdict) > 0
+    assert (np.diff(met.pairs.faces, axis=1) != 0).all() and not met.pairs.touching.all()
+    assert (met.pairs.lower == 0).all() and met.pairs[0].verdict == "intersecting" and met.pairs[0].points.shape == (2, 3)
+    again = pickle.loads(pickle.dumps(met))
+    np.testing.assert_array_equal(again.pairs.points, met.pairs.points)
+    undecided = snug.Surface(two, faces + [[v + 8 for v in face] for face in faces]).self_contact(max_splits=0)
+    with pytest.raises(snug.UndecidedError, match="max_splits"):
+        bool(undecided)
+    with pytest.raises(ValueError, match="within"):
+        cube.self_contact(radius=1)
+
+
+def test_how_far_the_surface_is_from_its_faces(cube):
+    apart = cube.limit_to_faces()
+    points = cube.evaluate(np.repeat(np.arange(6), 25), np.tile(np.linspace(0, 1, 5), 30), np.tile(np.repeat(np.linspace(0, 1, 5), 5), 6)).point
+    assert (1 - np.abs(points).max(axis=1)).max() <= apart < 1
+    assert snug.Surface(CUBE, CUBE_FACES, scheme="bilinear").limit_to_faces() == 0
+    assert snug.Surface(CUBE, CUBE_FACES, scheme="doo-sabin").limit_to_faces() is None
