@@ -10,7 +10,7 @@ Do not change an array while a call with it is under way in another thread.
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, List
 
 from ._errors import FileError, MeshError, MeshWarning, PoseError, UndecidedError
 from ._snug import (
@@ -93,6 +93,11 @@ if TYPE_CHECKING:
     from . import collision, proximity
     from ._view import Page, view
     from .collision import CollisionManager
+
+
+def __dir__() -> List[str]:
+    """What users need."""
+    return sorted(__all__)
 
 
 def __getattr__(name: str) -> Any:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import os
 import warnings
-from typing import Any, List, Optional, Tuple
+from typing import Any, Callable, List, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,16 @@ Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.uint32]
 
 _MOST = 2**32 - 2  # indices are 32 bits wide, and the largest one stands for none
+
+
+def bar() -> Callable[[float], object]:
+    """Shows the fraction done, until nobody holds it any longer."""
+    try:
+        tqdm = importlib.import_module("tqdm.auto").tqdm
+    except ImportError:
+        raise ValueError("progress=True needs tqdm, which is not installed; give a callable of the fraction done") from None
+    shown = tqdm(total=100, unit="%", leave=False)
+    return lambda done: shown.update(100 * done - shown.n)
 
 
 def doubles(numbers: Any, what: str) -> Doubles:

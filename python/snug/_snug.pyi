@@ -19,7 +19,7 @@ Words = Union[str, List[str]]
 
 Length = Union[float, str, None]
 Pose = Union[npt.ArrayLike, Tuple[npt.ArrayLike, npt.ArrayLike], Sequence[Tuple[npt.ArrayLike, npt.ArrayLike]], None]
-Progress = Optional[Callable[[float], object]]
+Progress = Union[bool, Callable[[float], object], None]
 Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 
 class _Tagged:

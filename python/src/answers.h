@@ -194,6 +194,7 @@ class AnswerClass {
 
 /// x in as few digits as tell it, at most `digits`.
 [[nodiscard]] std::string text_of(double x, int digits = 4);
+/// Both ends, with as many digits as tell them apart.
 [[nodiscard]] std::string text_of(const Interval& interval);
 
 /// Adds face, corner, u, v of the places that at(const T&) refers to.

@@ -3,6 +3,8 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include "arrays.h"
+
 namespace snug::python {
 namespace {
 
@@ -48,10 +50,10 @@ void Call::prepare() {
 Call::Call(const py::object& progress, const Run& run) : run_(run) {
   run_.monitor = &monitor_;
   monitor_.stop = &stop_;
-  if (!progress.is_none()) {
-    if (PyCallable_Check(progress.ptr()) == 0)
-      throw py::type_error("progress: give a callable of one number");
-    progress_ = progress;
+  if (!progress.is_none() && progress.ptr() != Py_False) {
+    progress_ = progress.ptr() == Py_True ? convert("bar")() : progress;
+    if (PyCallable_Check(progress_.ptr()) == 0)
+      throw py::type_error("progress: give True, or a callable of one number");
     monitor_.on_progress = [this](double done) {
       const py::gil_scoped_acquire acquired;
       if (fault_) return;

@@ -16,7 +16,7 @@ namespace py = pybind11;
 /// the stop flag of the call under way, if any, and then calls Python's. The call ends at its next checkpoint, and Python raises what its handler says.
 class Call {
  public:
-  /// `run`: threads and splits. `progress`: None, or callable with the fraction done; from any thread of the library, one at a time.
+  /// `run`: threads and splits. `progress`: None or False, True for a bar by tqdm, or callable with the fraction done; from any thread of the library, one at a time.
   explicit Call(const py::object& progress = py::none(), const Run& run = {});
   ~Call();
   Call(const Call&) = delete;

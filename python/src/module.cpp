@@ -18,7 +18,13 @@ std::string text_of(double x, int digits) {
 }
 
 std::string text_of(const Interval& interval) {
-  return text_of(interval.lower) + " to " + text_of(interval.upper);
+  std::string lower, upper;
+  for (int digits = 4; digits <= 17; ++digits) {
+    lower = text_of(interval.lower, digits);
+    upper = text_of(interval.upper, digits);
+    if (lower != upper || interval.lower == interval.upper) break;
+  }
+  return lower + " to " + upper;
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include "signatures.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -36,6 +37,59 @@ std::string parameters_of(const Record& record, std::size_t first) {
   return text + ")";
 }
 
+// What is amiss with the arguments of a call.
+std::string fault_of(const Record& record, const py::tuple& given, const py::dict& named) {
+  for (const auto& item : named) {
+    const auto name = item.first.cast<std::string>();
+    const bool known = std::any_of(record.args.begin(), record.args.end(),
+                                   [&](const auto& argument) { return name == argument.name; });
+    if (!known) return "has no argument '" + name + "'";
+  }
+  const std::size_t own = record.is_method ? 1 : 0;
+  if (given.size() > record.nargs_pos) {
+    return "takes at most " + std::to_string(record.nargs_pos - own) + " by position, not " +
+           std::to_string(given.size() - own);
+  }
+  std::string types;
+  for (std::size_t i = own; i < record.args.size(); ++i) {
+    const py::detail::argument_record& argument = record.args[i];
+    const bool is_named = named.contains(argument.name);
+    if (i < given.size() && is_named) return "was given '" + std::string(argument.name) + "' twice";
+    if (i >= given.size() && !is_named) {
+      if (!argument.value) return "needs '" + std::string(argument.name) + "'";
+      continue;
+    }
+    const py::object value = is_named ? py::object(named[argument.name]) : py::object(given[i]);
+    types += (types.empty() ? "" : ", ") + std::string(argument.name) + " is of " +
+             py::type::of(value).attr("__name__").cast<std::string>();
+  }
+  return "cannot take these types: " + types;
+}
+
+PyCFunctionWithKeywords dispatcher = nullptr;  // of pybind11, the same for all functions
+
+// Its text about arguments that do not fit has a dozen lines; ours is one, with the signature.
+PyObject* call(PyObject* self, PyObject* args, PyObject* kwargs) {
+  PyObject* const result = dispatcher(self, args, kwargs);
+  if (result != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) return result;
+  py::error_already_set error;
+  const Record* const record = py::reinterpret_borrow<py::capsule>(self).get_pointer<Record>();
+  const std::string text = py::str(error.value());
+  if (!text.starts_with(std::string(record->name) + "(): incompatible ")) {
+    error.restore();
+    return nullptr;
+  }
+  const std::string name = std::string(record->name) == "__init__"
+                               ? record->scope.attr("__name__").cast<std::string>()
+                               : record->name;
+  const py::dict named = kwargs != nullptr ? py::reinterpret_borrow<py::dict>(kwargs) : py::dict();
+  const std::string fault = fault_of(*record, py::reinterpret_borrow<py::tuple>(args), named);
+  const std::string message =
+      name + "() " + fault + ": " + name + parameters_of(*record, record->is_method ? 1 : 0);
+  PyErr_SetString(PyExc_TypeError, message.c_str());
+  return nullptr;
+}
+
 /// How CPython keeps a signature: before the text, which it tells apart from it.
 std::string with_signature(const std::string& name, const std::string& parameters, const char* text) {
   return name + parameters + "\n--\n\n" + (text != nullptr ? text : "");
@@ -47,6 +101,10 @@ void sign(py::handle object) {
   const std::string text = with_signature(record->name, parameters_of(*record, 0), record->def->ml_doc);
   std::free(const_cast<char*>(record->def->ml_doc));  // NOLINT: as pybind11 does, who made it by strdup()
   record->def->ml_doc = strdup(text.c_str());
+  // Functions of no arguments have no names to tell of.
+  if (record->args.empty()) return;
+  dispatcher = reinterpret_cast<PyCFunctionWithKeywords>(record->def->ml_meth);  // NOLINT
+  record->def->ml_meth = reinterpret_cast<PyCFunction>(call);                    // NOLINT
 }
 
 /// A class is called as its constructor is.

@@ -183,3 +183,38 @@ def test_values_that_do_not_fit(cube):
         snug.collide(cube, CUBE)
     with pytest.raises(TypeError):
         snug.Collision()
+
+
+@pytest.mark.parametrize("call, message", [
+    (lambda a: snug.collide(a), "collide() needs 'b': collide(a, b, *, pose_a=None"),
+    (lambda a: snug.collide(a, a, pose=1), "collide() has no argument 'pose': collide(a, b"),
+    (lambda a: snug.collide(a, 3), "collide() cannot take these types: a is of Surface, b is of int: collide(a, b"),
+    (lambda a: snug.collide(a, a, a=a), "collide() was given 'a' twice: collide(a, b"),
+    (lambda a: a.tessellate(1, 2), "tessellate() takes at most 1 by position, not 2: tessellate(error=None"),
+    (lambda a: a.closest_point(), "closest_point() needs 'points': closest_point(points, *"),
+    (lambda a: snug.Surface(), "Surface() needs 'vertices': Surface(vertices, faces=None"),
+    (lambda a: snug.Trajectory.through(), "through() needs 'poses': through(poses, *"),
+])
+def test_a_wrong_call_is_told_in_a_line(call, message, cube):
+    with pytest.raises(TypeError) as error:
+        call(cube)
+    assert str(error.value).startswith(message) and "\n" not in str(error.value)
+
+
+def test_errors_of_callbacks_stay_as_they_are(cube):
+    def fail(done):
+        raise TypeError("mine")
+
+    with pytest.raises(TypeError, match="^mine$"):
+        cube.tessellate("0.01%", progress=fail)
+
+
+def test_dir_shows_what_users_need():
+    assert dir(snug) == sorted(snug.__all__)
+
+
+def test_intervals_are_not_rounded_shut(cube, bracket, pin):
+    for relative in (1e-3, 1e-6, 1e-9):
+        found = snug.distance(bracket, pin, relative=relative)
+        lower, upper = repr(found).split()[1].rstrip(",>"), repr(found).split()[3].rstrip(",>")
+        assert found.lower == found.upper or float(lower) < float(upper)

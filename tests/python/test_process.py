@@ -7,6 +7,7 @@ import sys
 import textwrap
 import threading
 import time
+import types
 
 import numpy as np
 import pytest
@@ -55,6 +56,31 @@ def test_updates_while_others_ask(cube):
     for worker in workers:
         worker.join()
     assert not faults
+
+
+def test_a_bar(cube, monkeypatch):
+    bars = []
+
+    class Bar:
+        def __init__(self, total, **_):
+            self.n, self.total = 0, total
+            bars.append(self)
+
+        def update(self, by):
+            self.n += by
+
+    package = types.ModuleType("tqdm")
+    package.auto = types.ModuleType("tqdm.auto")
+    package.auto.tqdm = Bar
+    monkeypatch.setitem(sys.modules, "tqdm", package)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", package.auto)
+    cube.tessellate("0.5%", progress=True)
+    cube.tessellate("0.5%", progress=False)
+    assert len(bars) == 1 and 0 < bars[0].n <= bars[0].total
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ValueError, match="tqdm"):
+        cube.tessellate("0.5%", progress=True)
 
 
 def test_progress(cube):
