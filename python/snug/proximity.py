@@ -12,7 +12,7 @@ as in trimesh; scheme= and sharp=, those of snug.Surface(), make a smooth surfac
 
 from __future__ import annotations
 
-from typing import Any, List, Optional, Tuple, Union
+from typing import Any, Callable, List, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -214,10 +214,18 @@ def _normals_at(surface: Surface, points: Floats) -> Floats:
 
 
 class ProximityQuery:
-    """Queries about one mesh, which is made into a surface once. A later change of `mesh` is not seen."""
+    """Queries about one mesh, which is made into a surface by the first one. A later change of `mesh` is not seen."""
 
     def __init__(self, mesh: Any, *, scheme: Optional[str] = "auto", sharp: Sharp = None) -> None:
-        self._surface = as_surface(mesh, scheme, sharp)
+        # Not now: a mesh that makes its queries may be half made itself.
+        self._make: Callable[[], Surface] = lambda: as_surface(mesh, scheme, sharp)
+        self._made: Optional[Surface] = None
+
+    @property
+    def _surface(self) -> Surface:
+        if self._made is None:
+            self._made = self._make()
+        return self._made
 
     def on_surface(self, points: npt.ArrayLike) -> Tuple[Floats, Floats, Integers]:
         """closest_point()."""

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from conftest import MODELS
+from conftest import CUBE, CUBE_FACES, MODELS
 
 import snug
 from snug import proximity
@@ -82,6 +82,8 @@ def test_objects_come_and_go(manager):
     assert manager.in_collision_internal(return_names=True) == (False, set())
     distance, names = manager.min_distance_internal(return_names=True)
     assert names == ("left", "right") and distance == pytest.approx(3.0, rel=1e-3)
+    distance, names = manager.min_distance_internal("middle", return_names=True)
+    assert names == ("left", "middle") and distance == pytest.approx(8.0, rel=1e-3)
     manager.remove_object("right")
     manager.remove_object("middle")
     with pytest.raises(ValueError, match="no two objects"):
@@ -96,7 +98,10 @@ def test_a_surface_that_was_updated_is_asked_where_it_is_now(manager):
     assert manager.in_collision_internal(return_names=True)[1] == {("left", "middle")}
     surface.update(surface.vertices - np.array([95.0, 0.0, 0.0]))
     assert manager.in_collision_internal(return_names=True)[1] == {("left", "middle"), ("moving", "right")}
-    assert manager.min_distance_single(cube(), moved(5.0)) == 0
+    assert manager.min_distance_single(cube(), moved(5.0)) == pytest.approx(-2)
+    shallow = snug.CollisionManager(depth=False)
+    shallow.add_object("cube", cube())
+    assert shallow.min_distance_single(cube(), moved(0.5)) == 0
 
 
 def test_undecided_raises_unless_something_touches():
@@ -114,13 +119,34 @@ def test_undecided_raises_unless_something_touches():
     assert manager.in_collision_internal() is True
 
 
+def test_depths_are_negative_distances(manager):
+    """A translation of that length parts them; of what is not closed there is none."""
+    manager.add_object("open", snug.Surface([[0, -3, 0], [9, -3, 0], [9, 3, 0], [0, 3, 0]], [[0, 1, 2, 3]]), moved(20.0))
+    distance, names, data = manager.min_distance_internal(return_names=True, return_data=True)
+    assert names == ("left", "middle") and distance == data.interval[0] == pytest.approx(-0.5, rel=0.05)
+    assert data.interval[0] <= -0.5 <= data.interval[1]
+    assert snug.collide(cube(), cube(), pose_b=moved(1.5 - distance * 1.001)).separated
+    assert manager.min_distance_internal("open") > 0
+    manager.set_transform("open", moved(0.5))
+    assert manager.min_distance_internal("open") == 0
+
+
+def test_queries_of_a_mesh_that_is_made_later():
+    class Late:
+        def __init__(self):
+            self.nearest = proximity.ProximityQuery(self)
+            self.vertices, self.faces = CUBE, CUBE_FACES
+
+    assert Late().nearest.signed_distance([[0, 0, 0]])[0] > 0
+
+
 def test_solids():
     surfaces, solids = snug.CollisionManager(), snug.CollisionManager(solid=True)
     for manager in (surfaces, solids):
         manager.add_object("shell", cube())
         manager.add_object("core", cube(0.5))
     assert surfaces.in_collision_internal() is False and solids.in_collision_internal() is True
-    assert solids.min_distance_internal() == 0
+    assert solids.min_distance_internal() == pytest.approx(-1.25, rel=1e-5)
 
 
 def test_boxes_lose_no_pair(pawn):
