@@ -126,6 +126,26 @@ export interface Cage {
   offsets: Uint32Array;
   corners: Uint32Array;
 }
+type Numbers = readonly number[] | Float64Array | Float32Array | Uint32Array | Uint16Array | Int32Array;
+/** A control mesh, of flat arrays: points x y z, and either triangles of three vertices each, or the faces as in Cage. */
+export interface MeshArrays {
+  points: Numbers;
+  triangles?: Numbers;
+  offsets?: Numbers;
+  corners?: Numbers;
+  /** Two vertices and a sharpness each; from 10 on an edge stays sharp. */
+  creases?: Numbers;
+  /** A vertex and a sharpness each. */
+  sharpCorners?: Numbers;
+  /** Faces without a surface. */
+  holes?: Numbers;
+}
+/** What a BufferGeometry of three.js has. */
+export interface Geometry {
+  attributes: Record<string, { count: number; getX(i: number): number; getY(i: number): number; getZ(i: number): number } | any>;
+  index: { array: ArrayLike<number> } | null;
+}
+
 /** Limit points and normals on a lattice of 2^level steps a patch; each patch has its own. For drawing. */
 export interface Samples {
   positions: Float32Array;
@@ -188,6 +208,84 @@ export interface Hulls {
   problems: { fault: string; inner: boolean; place: Point; owner: number | null }[];
 }
 
+/** A closed mesh around the surface. */
+export interface Envelope {
+  positions: Float64Array;
+  triangles: Uint32Array;
+  error: number;
+  clearance: number;
+  volume: Interval;
+  /** "complete": proved closed, and between clearance and error from the surface. */
+  outcome: Outcome;
+  problems: Hulls["problems"];
+}
+export interface RayHit {
+  /** Contains a hit, if certified, else maybe; in lengths of the direction. */
+  t: Interval;
+  certified: boolean;
+  /** 1 where the ray leaves on the side of the normal, -1 on the other, 0 where that is not known. */
+  side: -1 | 0 | 1;
+  point: Point;
+  error: number;
+  normal: Point | null;
+  at: Place | null;
+}
+export interface RayHits {
+  hits: RayHit[];
+  outcome: Outcome;
+  /** Is it proved that there is a hit, or that there is none? */
+  certainHit: boolean;
+  certainMiss: boolean;
+}
+export interface SurfacePoint {
+  point: Point;
+  error: number;
+  tangents: [Point, Point];
+  differentiable: boolean;
+  normal: Point | null;
+  normalError: number | null;
+}
+export type SelfVerdict = "clear" | "intersecting" | "near" | "undecided";
+export interface SelfContact {
+  verdict: SelfVerdict;
+  outcome: Outcome;
+  /** The places that the verdict rests on, at most 100. */
+  pairs: {
+    verdict: SelfVerdict;
+    /** Of facets: no point in common is inside of both. */
+    touching: boolean;
+    distance: Interval;
+    witness: [Point, Point];
+    witnessError: number;
+    witnessAt: [WitnessPlace, WitnessPlace];
+  }[];
+}
+export interface TimeOfContact {
+  verdict: Verdict;
+  outcome: Outcome;
+  /** No common point before its lower end; the upper one is Infinity if none was found. */
+  time: Interval;
+  witness: [Point, Point] | null;
+  witnessError: number | null;
+  witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
+  contained: 0 | 1 | null;
+  steps: number;
+  stats: SearchStats;
+}
+export interface OneSidedDistance {
+  distance: Interval;
+  /** The farthest point found, off by at most `error` a coordinate, and a point of the other set near it. */
+  point: Point;
+  error: number;
+  at: Place | null;
+  nearest: Point;
+}
+export interface Deviation {
+  fromSurface: OneSidedDistance;
+  fromCandidate: OneSidedDistance;
+  outcome: Outcome;
+}
+
 /** A limit surface. It lives outside of JavaScript's memory: delete() it. */
 export interface Surface {
   /** Longest side of the box of the vertices that faces use. */
@@ -208,11 +306,24 @@ export interface Surface {
   enclosures(options?: BoundOptions): Enclosures;
   enclosureShapes(options?: BoundOptions): EnclosureShapes;
   hull(options?: { error?: number; inner?: boolean; outer?: boolean; maxSplits?: number }): Hulls;
+  /** A closed mesh around the surface, whatever it is; error: 1 % of the size, clearance: a quarter of that. */
+  envelope(options?: { error?: number; clearance?: number; maxSplits?: number }): Envelope;
+  evaluate(at: Place): SurfacePoint;
   /** signed: negative inside a closed surface. */
   closestPoint(
     point: Point | readonly number[],
     options?: { absolute?: number; relative?: number; signed?: boolean; maxSplits?: number },
   ): ClosestPoint;
+  /** Inside a closed surface? null where that cannot be decided. */
+  contains(point: Point | readonly number[]): boolean | null;
+  /** From `from` (0) to `to` (Infinity), in lengths of the direction. absolute: intended length of an interval. */
+  ray(
+    origin: Point | readonly number[],
+    direction: Point | readonly number[],
+    options?: { query?: "nearest" | "any" | "all"; from?: number; to?: number; absolute?: number; maxSplits?: number },
+  ): RayHits;
+  /** within: are points so near to each other farther apart than `radius` along the surface? */
+  selfContact(options?: { within?: number; radius?: number; maxSplits?: number }): SelfContact;
   /** How far the limit surface may be from the faces of its control mesh; null with a dual scheme. */
   limitToFaces(): number | null;
   /** volume is null unless the surface is closed. */
@@ -223,10 +334,25 @@ export interface Surface {
 export interface SnugModule {
   /** Reads OBJ, OFF, PLY, STL, USD or glTF; the ending of the name says which. */
   read(name: string, data: string | ArrayBuffer | ArrayBufferView, options?: ReadOptions): Surface;
+  fromArrays(arrays: MeshArrays, options?: ReadOptions): Surface;
+  /** The triangles of a BufferGeometry of three.js: flat, and equal vertices merged, unless the options say otherwise. */
+  fromGeometry(geometry: Geometry, options?: ReadOptions): Surface;
   collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
   distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;
   /** Of two closed surfaces: the shortest translation that separates the solids. */
   penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number; maxSplits?: number }): Penetration;
+  /** When do moving surfaces first touch? Motions pass through a list of poses, one unit of time from each to the next. */
+  timeOfContact(
+    a: Surface,
+    b: Surface,
+    options?: { motionA?: readonly Pose[]; motionB?: readonly Pose[]; tolerance?: number; solid?: boolean; proveContact?: boolean; maxSplits?: number },
+  ): TimeOfContact;
+  /** How far triangles deviate from a surface, and it from them. */
+  deviation(
+    surface: Surface,
+    triangles: { positions: Numbers; triangles: Numbers },
+    options?: { absolute?: number; threshold?: number; maxSplits?: number },
+  ): Deviation;
   /** after: a pose to begin with; then rotated about an axis (z) through the origin, then moved. */
   pose(steps: { after?: Pose; axis?: readonly number[]; degrees?: number; move?: readonly number[] }): number[];
   /** About six digits of a lower bound, rounded down, and of an upper one, rounded up, as the command prints them. */

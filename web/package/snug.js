@@ -25,6 +25,15 @@ function bytesOf(data) {
   throw new TypeError("read: give a string, an ArrayBuffer or a Uint8Array");
 }
 
+// Of a BufferGeometry of three.js; its accessors know of strides and integers that stand for fractions.
+function arraysOf(geometry) {
+  const position = geometry?.attributes?.position;
+  if (position === undefined) throw new TypeError("fromGeometry: give a BufferGeometry with positions");
+  const points = new Float64Array(3 * position.count);
+  for (let i = 0; i < position.count; ++i) points.set([position.getX(i), position.getY(i), position.getZ(i)], 3 * i);
+  return { points, triangles: geometry.index?.array ?? Uint32Array.from({ length: position.count }, (_, i) => i) };
+}
+
 async function wasmBeside(url) {
   const place = new URL("./snug.wasm", url);
   if (place.protocol === "file:" && typeof process !== "undefined") {
@@ -80,8 +89,23 @@ export default async function Snug({ wasm } = {}) {
     hull(options = {}) {
       return checked(module.hull(Surface.part(this), options));
     }
+    envelope(options = {}) {
+      return checked(module.envelope(Surface.part(this), options));
+    }
+    evaluate(at) {
+      return checked(module.evaluate(Surface.part(this), at));
+    }
     closestPoint(point, options = {}) {
       return checked(module.closest(Surface.part(this), point, options));
+    }
+    contains(point) {
+      return checked(module.contains(Surface.part(this), point));
+    }
+    ray(origin, direction, options = {}) {
+      return checked(module.ray(Surface.part(this), origin, direction, options));
+    }
+    selfContact(options = {}) {
+      return checked(module.selfContact(Surface.part(this), options));
     }
     limitToFaces() {
       return checked(module.limitToFaces(Surface.part(this)));
@@ -98,9 +122,14 @@ export default async function Snug({ wasm } = {}) {
   return {
     Surface,
     read: (name, data, options = {}) => new Surface(checked(module.read(bytesOf(data), name, options)).part),
+    fromArrays: (arrays, options = {}) => new Surface(checked(module.fromArrays(arrays, options)).part),
+    fromGeometry: (geometry, options = {}) =>
+      new Surface(checked(module.fromArrays(arraysOf(geometry), { scheme: "flat", weld: 0, ...options })).part),
     collide: (a, b, options = {}) => checked(module.collide(Surface.part(a), Surface.part(b), options)),
     distance: (a, b, options = {}) => checked(module.distance(Surface.part(a), Surface.part(b), options)),
     penetration: (a, b, options = {}) => checked(module.penetration(Surface.part(a), Surface.part(b), options)),
+    timeOfContact: (a, b, options = {}) => checked(module.timeOfContact(Surface.part(a), Surface.part(b), options)),
+    deviation: (surface, triangles, options = {}) => checked(module.deviation(Surface.part(surface), triangles, options)),
     pose: (steps) => checked(module.pose(steps)),
     textAtMost: (x) => module.textAtMost(x, false),
     textAtLeast: (x) => module.textAtMost(x, true),

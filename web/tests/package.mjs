@@ -214,6 +214,87 @@ test("draws, bounds and measures", () => {
   assert.ok(inside.depth[0] <= inside.depth[1]);
 });
 
+test("makes surfaces of arrays", () => {
+  for (const [name, scheme] of [["star.obj", "auto"], ["bracket.obj", "auto"], ["pawn.obj", "doo-sabin"]]) {
+    const read = model(name, { scheme }), { points, offsets, corners } = read.cage();
+    const made = snug.fromArrays({ points, offsets, corners }, { scheme });
+    assert.equal(made.scheme, read.scheme);
+    assert.deepStrictEqual(made.measure(), read.measure());
+    made.delete();
+  }
+  const box = { points: [0, 1, 2, 3, 4, 5, 6, 7].flatMap((k) => [4 * (k & 1), k & 2, (k & 4) / 4]),
+    triangles: [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5] };
+  const volume = (surface) => surface.measure().volume;
+  const smooth = snug.fromArrays(box), facets = snug.fromArrays(box, { scheme: "flat" });
+  assert.equal(smooth.scheme, "loop");
+  assert.match(smooth.notes[0], /^arrays: triangles taken as the control mesh of a Loop surface/);
+  assert.ok(volume(facets)[0] <= 8 && 8 <= volume(facets)[1] && facets.notes.length === 0);
+  const edges = new Set(box.triangles.flatMap((v, i) => [[v, box.triangles[i - (i % 3) + ((i + 1) % 3)]].sort().join(" ")]));
+  const creases = [...edges].flatMap((edge) => [...edge.split(" ").map(Number), 10]);
+  assert.ok(Math.abs(volume(snug.fromArrays({ ...box, creases }))[0] - 8) < 1e-3);
+  assert.ok(volume(snug.fromArrays({ ...box, creases: creases.map((x, i) => (i % 3 === 2 ? 1 : x)) }))[1] < 7.9);
+  const { throws } = assert;
+  throws(() => snug.fromArrays({ points: box.points }), { problem: "value", message: "give either triangles, or offsets and corners" });
+  throws(() => snug.fromArrays({ ...box, points: [1, 2] }), { problem: "value", message: /^points: give 3 numbers each; 2 are not a multiple/ });
+  throws(() => snug.fromArrays({ ...box, triangles: [0, 1, -1] }), { problem: "value", message: /^triangles: give whole numbers/ });
+  throws(() => snug.fromArrays({ ...box, triangles: [0, 1, 0.5] }), { problem: "value" });
+  throws(() => snug.fromArrays({ ...box, triangles: [0, 1, 99] }), { problem: "refused", message: /^arrays: / });
+  throws(() => snug.fromArrays({ points: box.points, offsets: [0, 4, 2], corners: [0, 1, 2, 3] }), { problem: "value", message: /^offsets: / });
+  throws(() => snug.fromArrays({ points: box.points, offsets: [0, 4], corners: [0, 1, 2] }), { problem: "value" });
+});
+
+test("takes the geometries of three.js", async () => {
+  const { BoxGeometry, SphereGeometry } = await import(pathToFileURL(join(root, "web/node_modules/three/build/three.module.js")));
+  const box = snug.fromGeometry(new BoxGeometry(4, 2, 1));
+  assert.equal(box.scheme, "flat");
+  const [lower, upper] = box.measure().volume;
+  assert.ok(lower <= 8 && 8 <= upper);
+  assert.equal(box.contains([1.9, 0.9, 0.4]), true);
+  assert.equal(box.contains([2.1, 0, 0]), false);
+  const [least, most] = snug.fromGeometry(new BoxGeometry(4, 2, 1).toNonIndexed()).measure().volume;
+  assert.ok(least <= 8 && 8 <= most);
+  assert.equal(snug.fromGeometry(new SphereGeometry(1, 8, 6), { weld: 1e-9 }).contains([0.1, 0.2, 0.3]), true);
+  assert.ok(snug.fromGeometry(new BoxGeometry(1, 1, 1), { scheme: "loop" }).measure().volume[1] < 0.9);
+  assert.throws(() => snug.fromGeometry({}), TypeError);
+});
+
+test("asks about itself, motions, rays, envelopes and deviations as the native library does", () => {
+  const same = (own, native) => assert.deepStrictEqual(own, native);
+  for (const [name, scheme] of [["bracket.obj", "auto"], ["star.obj", "auto"], ["pawn.obj", "bilinear"]]) {
+    const surface = model(name, { scheme }), path = join(models, name), native = (...words) => ask(...words, "--scheme", scheme);
+    const self = native("self-contact", path);
+    same(surface.selfContact().verdict, self.verdict);
+    same(surface.selfContact().pairs.map((pair) => [pair.verdict, pair.touching, pair.distance, pair.witness]),
+      self.pairs.map((pair) => [pair.verdict, pair.touching, pair.distance, pair.witness]));
+    const points = Array.from({ length: 10 }, () => [centred(2), centred(2), centred(2)]);
+    const file = join(scratch, "rays.txt");
+    writeFileSync(file, points.map((p) => `${p.join(" ")} 0.1 0.2 -1\n`).join(""));
+    native("ray", path, "--rays", file, "--all").results.forEach(({ hits }, i) => {
+      const own = surface.ray(points[i], [0.1, 0.2, -1], { query: "all" });
+      same(own.hits.map((hit) => [hit.t, hit.certified, hit.side]), hits.map((hit) => [hit.t, hit.certified, hit.side]));
+    });
+    writeFileSync(file, points.map((p) => `${p.join(" ")}\n`).join(""));
+    native("closest", path, "--points", file, "--signed").results.forEach((each, i) => same(surface.contains(points[i]), each.inside));
+  }
+  const [bracket, pin] = [model("bracket.obj"), model("pin.obj")], files = [join(models, "bracket.obj"), join(models, "pin.obj")];
+  const poses = [snug.pose({ move: [0, 0, 2] }), snug.pose({ degrees: 30, move: [0.1, 0, 1] }), snug.pose({ move: [0, 0, 0.5] })];
+  const path = join(scratch, "path.txt");
+  writeFileSync(path, poses.map((pose) => pose.join(" ")).join("\n") + "\n");
+  const first = ask("time-of-contact", ...files, "--path-b", path);
+  const own = snug.timeOfContact(bracket, pin, { motionB: poses });
+  assert.equal(first.verdict, "intersecting");
+  same([own.verdict, own.time, own.steps, own.witness], [first.verdict, first.time, first.steps, first.witness]);
+  assert.throws(() => snug.timeOfContact(bracket, pin, { motionB: [] }), { problem: "value", message: "motionB: give a list of poses" });
+  const around = pin.envelope({ error: 0.05 * pin.size });
+  assert.ok(around.outcome === "complete" && around.positions.length % 3 === 0 && around.triangles.length > 30 && around.clearance === around.error / 4);
+  const triangles = pin.tessellate({ error: 0.01 * pin.size });
+  const apart = snug.deviation(pin, triangles, { absolute: 1e-3 * pin.size });
+  assert.ok(apart.outcome === "complete" && apart.fromSurface.distance[1] <= triangles.errorBound * 1.001 + 1e-3 * pin.size);
+  assert.throws(() => snug.deviation(pin, { positions: [0, 0, 0], triangles: [0, 1, 2] }), { problem: "value" });
+  const there = pin.evaluate({ owner: 3, corner: 0, u: 0.25, v: 0.5 });
+  assert.ok(pin.closestPoint(there.point, { absolute: 1e-9 }).distance[0] <= 1e-9 && there.normal.length === 3);
+});
+
 test("says what triangles are taken to be", () => {
   const points = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [4 * (k & 1), k & 2, (k & 4) / 4].join(" "));
   const faces = ["0 2 3", "0 3 1", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 6 7", "2 7 3", "0 4 6", "0 6 2", "1 3 7", "1 7 5"];

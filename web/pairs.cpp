@@ -1,0 +1,240 @@
+// Poses, and questions about two surfaces, or about one and itself.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "part.h"
+
+namespace snug::web {
+namespace {
+
+// Poses: twelve numbers, or nothing for the identity.
+
+std::array<double, 12> twelve(const val& numbers) {
+  if (!numbers.isArray() && numbers["BYTES_PER_ELEMENT"].isUndefined()) {
+    throw InputError(InputProblem::pose, "a pose is a list of twelve numbers, row by row: R | t");
+  }
+  const std::vector<double> read = emscripten::convertJSArrayToNumberVector<double>(numbers);
+  if (read.size() != 12) {
+    throw InputError(
+        InputProblem::pose,
+        "a pose is a list of twelve numbers, row by row: R | t; this one has " + std::to_string(read.size()));
+  }
+  std::array<double, 12> matrix;
+  std::copy(read.begin(), read.end(), matrix.begin());
+  return matrix;
+}
+Motion motion_of(const val& numbers) {
+  return numbers.isUndefined() || numbers.isNull() ? Motion() : Motion::from_3x4(twelve(numbers));
+}
+// {axis, degrees, move}: rotated about an axis through the origin, then moved; `after` another pose.
+val make_pose(const val& parts) {
+  return guarded([&] {
+    std::optional<Motion> motion;
+    // Nothing is multiplied by the identity, which would turn -0 into 0.
+    const auto then = [&](const Motion& next) { motion = motion ? next * *motion : next; };
+    if (given(parts, "after")) then(motion_of(parts["after"]));
+    if (given(parts, "degrees")) {
+      const Vector3 axis = given(parts, "axis") ? vector_of(parts["axis"], "axis") : Vector3{0, 0, 1};
+      then(Motion::rotation_degrees(axis, parts["degrees"].as<double>()));
+    }
+    if (given(parts, "move")) {
+      const Vector3 by = vector_of(parts["move"], "move");
+      const Vector3 from = motion ? motion->offset() : Vector3{};
+      motion = motion.value_or(Motion()).with_offset({from.x + by.x, from.y + by.y, from.z + by.z});
+    }
+    return array_of(motion.value_or(Motion()));
+  });
+}
+
+// Answers.
+
+val places_of(const std::array<const PlacedSurface*, 2>& sides, const WitnessPoints& points) {
+  val list = val::array();
+  for (std::size_t s = 0; s < 2; ++s) {
+    if (!points[s].at) {
+      list.set(s, val::null());
+      continue;
+    }
+    const Place& at = *points[s].at;
+    val place = object_of(at);
+    const std::optional<SurfaceNormal> normal = normal_at(*sides[s], at);
+    place.set("normal", normal ? array_of(normal->direction) : val::null());
+    place.set("normalError", normal && normal->error ? val(*normal->error) : val::null());
+    list.set(s, place);
+  }
+  return list;
+}
+
+// The fields of witnesses; null where there are none.
+void add_witness(val& result, const std::array<const PlacedSurface*, 2>& sides, const WitnessPoints* points) {
+  val list = val::array();
+  for (std::size_t s = 0; points != nullptr && s < 2; ++s) list.set(s, array_of((*points)[s].point));
+  result.set("witness", points ? list : val::null());
+  result.set("witnessError", points ? val(std::max((*points)[0].error, (*points)[1].error)) : val::null());
+  result.set("witnessAt", points ? places_of(sides, *points) : val::null());
+}
+
+void add_stats(val& result, const SearchStats& stats) {
+  val list = val::object();
+  list.set("boxTests", static_cast<double>(stats.box_tests));
+  list.set("triangleTests", static_cast<double>(stats.triangle_tests));
+  list.set("evaluations", static_cast<double>(stats.evaluations));
+  list.set("splits", static_cast<double>(stats.splits));
+  result.set("stats", list);
+}
+
+val contained_of(const std::optional<std::size_t>& side) {
+  return side ? val(static_cast<unsigned>(*side)) : val::null();
+}
+
+// Where a proof is wanted: receives it, and sets it in a result.
+class Proof {
+ public:
+  explicit Proof(const val& options) : wanted_(option<bool>(options, "certificate").value_or(false)) {}
+  Run with(Run run) { return run.certificate = wanted_ ? &certificate_ : nullptr, run; }
+  void add_to(val& result) const {
+    if (!wanted_) return;
+    val object = val::object();
+    object.set("text", certificate_.text);
+    object.set("missing", certificate_.missing);
+    result.set("certificate", object);
+  }
+
+ private:
+  bool wanted_;
+  Certificate certificate_;
+};
+
+val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
+  return guarded([&] {
+    const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
+    const PlacedSurface b(part_b.surface(), motion_of(options["poseB"]));
+    CollideOptions how;
+    how.tolerance = option<double>(options, "tolerance");
+    how.margin = option<double>(options, "margin").value_or(0);
+    how.solid = option<bool>(options, "solid").value_or(false);
+    how.measure = option<bool>(options, "measure").value_or(false);
+    how.prove_contact = option<bool>(options, "proveContact").value_or(false);
+    Proof proof(options);
+    const Collision answer = collide(a, b, how, proof.with(run_of(options)));
+    val result = val::object();
+    result.set("verdict", std::string(name_of(answer.verdict)));
+    result.set("outcome", std::string(name_of(answer.outcome)));
+    result.set("distance", array_of(answer.distance));
+    add_witness(result, {&a, &b}, answer.witness ? &*answer.witness : nullptr);
+    result.set("contained", contained_of(answer.contained));
+    add_stats(result, answer.stats);
+    proof.add_to(result);
+    return result;
+  });
+}
+
+val distance_of_parts(const Part& part_a, const Part& part_b, const val& options) {
+  return guarded([&] {
+    const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
+    const PlacedSurface b(part_b.surface(), motion_of(options["poseB"]));
+    DistanceOptions how;
+    how.absolute = option<double>(options, "absolute");
+    how.relative = option<double>(options, "relative");
+    how.solid = option<bool>(options, "solid").value_or(false);
+    Proof proof(options);
+    const Distance answer = distance(a, b, how, proof.with(run_of(options)));
+    val result = val::object();
+    result.set("outcome", std::string(name_of(answer.outcome)));
+    result.set("distance", array_of(answer.distance));
+    add_witness(result, {&a, &b}, &answer.witness);
+    result.set("contained", contained_of(answer.contained));
+    add_stats(result, answer.stats);
+    proof.add_to(result);
+    return result;
+  });
+}
+
+val penetration_of_parts(const Part& part_a, const Part& part_b, const val& options) {
+  return guarded([&] {
+    PenetrationOptions how;
+    how.relative = option<double>(options, "relative").value_or(how.relative);
+    const Penetration answer =
+        penetration({part_a.surface(), motion_of(options["poseA"])},
+                    {part_b.surface(), motion_of(options["poseB"])}, how, run_of(options));
+    val result = val::object();
+    result.set("depth", array_of(answer.depth));
+    result.set("translation", array_of(answer.translation));
+    result.set("outcome", std::string(name_of(answer.outcome)));
+    return result;
+  });
+}
+
+// Through a list of poses, one unit of time from each to the next; one pose stays, and nothing is the identity.
+Trajectory trajectory_of(const val& poses, const char* what) {
+  if (poses.isUndefined() || poses.isNull()) return Motion();
+  const std::size_t count = poses.isArray() ? poses["length"].as<std::size_t>() : 0;
+  if (count == 0) throw InputError(InputProblem::value, std::string(what) + ": give a list of poses");
+  std::vector<Motion> motions;
+  for (std::size_t i = 0; i < count; ++i) motions.push_back(motion_of(poses[i]));
+  return Trajectory::through(motions);
+}
+
+val time_of_contact_of_parts(const Part& part_a, const Part& part_b, const val& options) {
+  return guarded([&] {
+    const Trajectory motion_a = trajectory_of(options["motionA"], "motionA"),
+                     motion_b = trajectory_of(options["motionB"], "motionB");
+    TimeOfContactOptions how;
+    how.tolerance = option<double>(options, "tolerance");
+    how.solid = option<bool>(options, "solid").value_or(false);
+    how.prove_contact = option<bool>(options, "proveContact").value_or(true);
+    const TimeOfContact answer =
+        time_of_contact(part_a.surface(), motion_a, part_b.surface(), motion_b, how, run_of(options));
+    const double time = std::isfinite(answer.time.upper) ? answer.time.upper : 0;
+    const auto pose = [&](const Trajectory& motion) { return motion.at(std::min(time, motion.duration())); };
+    const PlacedSurface a(part_a.surface(), pose(motion_a)), b(part_b.surface(), pose(motion_b));
+    val result = val::object();
+    result.set("verdict", word(name_of(answer.verdict)));
+    result.set("outcome", word(name_of(answer.outcome)));
+    result.set("time", array_of(answer.time));
+    add_witness(result, {&a, &b}, answer.witness ? &*answer.witness : nullptr);
+    result.set("contained", contained_of(answer.contained));
+    result.set("steps", answer.steps);
+    add_stats(result, answer.stats);
+    return result;
+  });
+}
+
+val self_contact_of(const Part& part, const val& options) {
+  return guarded([&] {
+    SelfContactOptions how;
+    how.within = option<double>(options, "within");
+    how.radius = option<double>(options, "radius");
+    const SelfContact answer = self_contact(part.surface(), how, run_of(options));
+    const PlacedSurface surface(part.surface());
+    val result = val::object();
+    result.set("verdict", word(name_of(answer.verdict)));
+    result.set("outcome", word(name_of(answer.outcome)));
+    val pairs = val::array();
+    for (const SelfContactPair& each : answer.pairs) {
+      val pair = val::object();
+      pair.set("verdict", word(name_of(each.verdict)));
+      pair.set("touching", each.touching);
+      pair.set("distance", array_of(each.distance));
+      add_witness(pair, {&surface, &surface}, &each.points);
+      pairs.call<void>("push", pair);
+    }
+    result.set("pairs", pairs);
+    return result;
+  });
+}
+
+}  // namespace
+}  // namespace snug::web
+
+EMSCRIPTEN_BINDINGS(pairs) {
+  using namespace snug::web;  // NOLINT
+  emscripten::function("pose", &make_pose);
+  emscripten::function("collide", &collide_parts);
+  emscripten::function("distance", &distance_of_parts);
+  emscripten::function("penetration", &penetration_of_parts);
+  emscripten::function("timeOfContact", &time_of_contact_of_parts);
+  emscripten::function("selfContact", &self_contact_of);
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "values.h"
+
+namespace snug::web {
+
+inline constexpr std::size_t scheme_count = static_cast<std::size_t>(Scheme::flat) + 1;
+
+// A surface, and what is told of how it was made.
+class Part {
+ public:
+  // Errors: InputError, with the name before it.
+  Part(ControlMesh mesh, const std::string& name, const val& options, std::vector<std::string> notes = {});
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] double size() const { return surface_.size(); }
+  [[nodiscard]] std::string scheme() const { return name_of(surface_.scheme()); }
+  [[nodiscard]] std::string boundary() const;
+  [[nodiscard]] val notes() const;
+
+ private:
+  Surface made(ControlMesh mesh, const std::string& name, const val& options);
+
+  std::vector<std::string> notes_;
+  Surface surface_;
+};
+
+}  // namespace snug::web

@@ -1,0 +1,323 @@
+// What is made from a surface: meshes to draw, enclosures, hulls, measures.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <picture/polyhedron.h>
+
+#include "part.h"
+
+namespace snug::web {
+namespace {
+
+bool has_triangles(Scheme scheme) { return scheme == Scheme::loop || scheme == Scheme::flat; }
+
+val cage_of(const Part& part) {
+  return guarded([&] {
+    const ControlMesh& mesh = part.surface().mesh();
+    std::vector<double> points;
+    for (const Point3& p : mesh.points) points.insert(points.end(), {p.x, p.y, p.z});
+    std::vector<std::uint32_t> corners;
+    for (const VertexId v : mesh.face_vertices) corners.push_back(v.value());
+    val result = val::object();
+    result.set("points", copied(points));
+    result.set("offsets", copied(mesh.face_offsets));
+    result.set("corners", copied(corners));
+    return result;
+  });
+}
+
+void require_count(double count, double most, const char* what) {
+  if (count <= most) return;
+  throw InputError(InputProblem::refused, std::string(what) + ": this level makes more than " +
+                                              std::to_string(static_cast<long>(most)) +
+                                              "; choose a lower level");
+}
+
+// Limit points and normals on a lattice of 2^level steps a patch; each patch has its own, so that creases stay sharp.
+val sampled(const Part& part, unsigned level) {
+  return guarded([&] {
+    const Surface& surface = part.surface();
+    const bool triangular = has_triangles(surface.scheme());
+    const PatchBounds bounds(surface, {.threads = 1});
+    const auto patches = bounds.patches();
+    require_count(std::ldexp(static_cast<double>(patches.size()), static_cast<int>(2 * level)), 4e6,
+                  "triangles");
+    const std::uint32_t steps = 1u << level, points = (steps + 1) * (steps + 2) / 2;
+    std::vector<Place> at;
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      const auto first = static_cast<std::uint32_t>(p) * points;
+      std::uint32_t next = first;
+      for (std::uint32_t j = 0; j <= steps; ++j) {
+        for (std::uint32_t i = 0; i + j <= steps; ++i, ++next) {
+          const double s = std::ldexp(i, -static_cast<int>(level)),
+                       t = std::ldexp(j, -static_cast<int>(level));
+          Place place{patches[p].owner, patches[p].part / 2, s, t};
+          // c0 c1 c2 of the quad, or c2 c3 c0.
+          if (!triangular && patches[p].part % 2 == 0) place.u = s + t;
+          if (!triangular && patches[p].part % 2 == 1) {
+            place.u = 1 - s - t;
+            place.v = 1 - t;
+          }
+          at.push_back(place);
+          const std::uint32_t row = steps + 1 - j;
+          if (i + j == steps) continue;
+          triangles.insert(triangles.end(), {next, next + 1, next + row});
+          if (i + j + 1 < steps) triangles.insert(triangles.end(), {next + 1, next + row + 1, next + row});
+        }
+      }
+    }
+    std::vector<float> positions(3 * at.size()), normals(3 * at.size());
+    const double error = evaluate(surface, at, FloatPoints{positions, normals}, {.threads = 1});
+    val result = val::object();
+    result.set("positions", copied(positions));
+    result.set("normals", copied(normals));
+    result.set("triangles", copied(triangles));
+    result.set("error", error);
+    return result;
+  });
+}
+
+val tessellated(const Part& part, const val& options) {
+  return guarded([&] {
+    TessellateOptions how;
+    how.error = option<double>(options, "error");
+    how.max_edge = option<double>(options, "maxEdge");
+    how.max_angle = option<double>(options, "maxAngle");
+    if (const auto most = option<double>(options, "maxTriangles")) {
+      how.max_triangles = static_cast<std::uint64_t>(*most);
+    }
+    const Tessellation made = tessellate(part.surface(), how, run_of(options, 4'000'000));
+    val result = val::object();
+    result.set("positions", copied(flat_points(made.positions)));
+    result.set("normals", copied(flat_points(made.normals)));
+    result.set("triangles", copied(flat(made.triangles)));
+    result.set("owners", copied(made.owners));
+    result.set("errorBound", made.error_bound);
+    result.set("outcome", std::string(name_of(made.outcome)));
+    return result;
+  });
+}
+
+BoundOptions bound_options(const val& options) {
+  BoundOptions how;
+  how.error = option<double>(options, "error");
+  how.level = static_cast<unsigned>(option<double>(options, "level").value_or(0));
+  return how;
+}
+
+val enclosures(const Part& part, const val& options) {
+  return guarded([&] {
+    std::vector<std::uint32_t> owners, parts, levels;
+    std::vector<double> base, radius, lower, upper;
+    val pieces = val::array();
+    const auto add = [](std::vector<double>& to, const Point3& p) { to.insert(to.end(), {p.x, p.y, p.z}); };
+    const BoundSummary summary = bound(
+        part.surface(), bound_options(options),
+        [&](const PatchEnclosure& piece) {
+          owners.push_back(piece.patch.owner);
+          parts.push_back(piece.patch.part);
+          levels.push_back(piece.level);
+          pieces.call<void>("push", piece.piece);
+          for (const Point3& p : piece.offset.base) add(base, p);
+          radius.push_back(piece.offset.radius);
+          for (const Box3& box : piece.interval.corner) {
+            add(lower, box.lower);
+            add(upper, box.upper);
+          }
+        },
+        run_of(options));
+    val result = val::object();
+    result.set("count", static_cast<double>(summary.count));
+    result.set("maxRadius", summary.max_radius);
+    result.set("outcome", std::string(name_of(summary.outcome)));
+    result.set("owners", copied(owners));
+    result.set("parts", copied(parts));
+    result.set("levels", copied(levels));
+    result.set("pieces", pieces);
+    result.set("base", copied(base));
+    result.set("radius", copied(radius));
+    result.set("lower", copied(lower));
+    result.set("upper", copied(upper));
+    return result;
+  });
+}
+
+// Enclosures as solids to draw: the hulls of interval triangles as triangles and edges, in single precision.
+val enclosure_shapes(const Part& part, const val& options) {
+  return guarded([&] {
+    const BoundOptions how = bound_options(options);
+    const PatchBounds bounds(part.surface(), {.threads = 1});
+    if (!how.error) {
+      require_count(std::ldexp(static_cast<double>(bounds.patches().size()), static_cast<int>(2 * how.level)),
+                    40'000, "enclosures");
+    }
+    std::vector<float> positions, edges;
+    double count = 0;
+    const auto add = [](std::vector<float>& to, const Point3& p) {
+      to.insert(to.end(), {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    };
+    const BoundSummary summary = bound(
+        part.surface(), how,
+        [&](const PatchEnclosure& piece) {
+          const Polyhedron hull = hull_of_boxes(piece.interval);
+          for (const auto& facet : hull.facets) {
+            for (std::size_t i = 0; i < facet.size(); ++i) {
+              const std::size_t next = (i + 1) % facet.size();
+              if (facet[i] < facet[next]) {
+                add(edges, hull.points[facet[i]]);
+                add(edges, hull.points[facet[next]]);
+              }
+              if (i == 0 || next == 0) continue;
+              for (const std::size_t corner : {std::size_t{0}, i, next})
+                add(positions, hull.points[facet[corner]]);
+            }
+          }
+          ++count;
+        },
+        run_of(options));
+    val result = val::object();
+    result.set("count", count);
+    result.set("maxRadius", summary.max_radius);
+    result.set("positions", copied(positions));
+    result.set("edges", copied(edges));
+    return result;
+  });
+}
+
+val problems_in(const std::vector<HullProblem>& found) {
+  val problems = val::array();
+  for (const HullProblem& each : found) {
+    val problem = val::object();
+    problem.set("fault", word(name_of(each.fault)));
+    problem.set("inner", each.inner);
+    problem.set("place", array_of(each.place));
+    problem.set("owner", each.owner ? val(*each.owner) : val::null());
+    problems.call<void>("push", problem);
+  }
+  return problems;
+}
+
+val one_hull(const std::optional<Hull>& hull) {
+  if (!hull) return val::null();
+  val result = val::object();
+  result.set("positions", copied(flat_points(hull->positions)));
+  result.set("triangles", copied(flat(hull->triangles)));
+  result.set("owners", copied(hull->owners));
+  result.set("gap", hull->gap);
+  return result;
+}
+
+val hulls_of(const Part& part, const val& options) {
+  return guarded([&] {
+    HullOptions how;
+    how.error = option<double>(options, "error");
+    how.inner = option<bool>(options, "inner").value_or(true);
+    how.outer = option<bool>(options, "outer").value_or(true);
+    const Hulls made = hull(part.surface(), how, run_of(options));
+    val result = val::object();
+    result.set("inner", one_hull(made.inner));
+    result.set("outer", one_hull(made.outer));
+    result.set("outcome", std::string(name_of(made.outcome)));
+    result.set("closed", made.closed);
+    result.set("problems", problems_in(made.problems));
+    return result;
+  });
+}
+
+// A closed mesh around a surface of any sort.
+val enveloped(const Part& part, const val& options) {
+  return guarded([&] {
+    EnvelopeOptions how;
+    how.error = option<double>(options, "error");
+    how.clearance = option<double>(options, "clearance");
+    const Envelope made = envelope(part.surface(), how, run_of(options));
+    val result = val::object();
+    result.set("positions", copied(flat_points(made.positions)));
+    result.set("triangles", copied(flat(made.triangles)));
+    result.set("error", made.error);
+    result.set("clearance", made.clearance);
+    result.set("volume", array_of(made.volume));
+    result.set("outcome", word(name_of(made.outcome)));
+    result.set("problems", problems_in(made.problems));
+    return result;
+  });
+}
+
+val one_sided(const OneSidedDistance& answer) {
+  val result = val::object();
+  result.set("distance", array_of(answer.distance));
+  result.set("point", array_of(answer.from.point));
+  result.set("error", answer.from.error);
+  result.set("at", answer.from.at ? object_of(*answer.from.at) : val::null());
+  result.set("nearest", array_of(answer.to));
+  return result;
+}
+
+// Of a surface and {positions, triangles}.
+val deviation_of(const Part& part, const val& candidate, const val& options) {
+  return guarded([&] {
+    DeviationOptions how;
+    how.absolute = option<double>(options, "absolute");
+    how.threshold = option<double>(options, "threshold");
+    const std::vector<double> numbers =
+        emscripten::convertJSArrayToNumberVector<double>(candidate["positions"]);
+    const auto corners = emscripten::convertJSArrayToNumberVector<double>(candidate["triangles"]);
+    std::vector<Point3> points;
+    for (const double v : corners) {
+      if (!(v >= 0 && v < static_cast<double>(numbers.size() / 3))) {
+        throw InputError(InputProblem::value, "triangles: an index without a position");
+      }
+      const double* const p = numbers.data() + 3 * static_cast<std::size_t>(v);
+      points.push_back({p[0], p[1], p[2]});
+    }
+    std::vector<Triangle> triangles;
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3)
+      triangles.push_back({points[i], points[i + 1], points[i + 2]});
+    const Deviation answer = deviation(part.surface(), triangles, how, run_of(options));
+    val result = val::object();
+    result.set("fromSurface", one_sided(answer.from_surface));
+    result.set("fromCandidate", one_sided(answer.from_candidate));
+    result.set("outcome", word(name_of(answer.outcome)));
+    return result;
+  });
+}
+
+val limit_to_faces_of(const Part& part) {
+  return guarded([&] {
+    const std::optional<double> apart = limit_to_faces(part.surface(), {.threads = 1});
+    return apart ? val(*apart) : val::null();
+  });
+}
+
+val measured(const Part& part, const val& options) {
+  return guarded([&] {
+    MeasureOptions how;
+    how.relative = option<double>(options, "relative");
+    const Measures measures = measure(part.surface(), how, run_of(options));
+    val result = val::object();
+    result.set("area", array_of(measures.area));
+    result.set("volume", measures.volume ? array_of(*measures.volume) : val::null());
+    result.set("outcome", std::string(name_of(measures.outcome)));
+    return result;
+  });
+}
+
+}  // namespace
+}  // namespace snug::web
+
+EMSCRIPTEN_BINDINGS(shapes) {
+  using namespace snug::web;  // NOLINT
+  emscripten::function("cage", &cage_of);
+  emscripten::function("sampled", &sampled);
+  emscripten::function("tessellate", &tessellated);
+  emscripten::function("enclosures", &enclosures);
+  emscripten::function("enclosureShapes", &enclosure_shapes);
+  emscripten::function("hull", &hulls_of);
+  emscripten::function("envelope", &enveloped);
+  emscripten::function("deviation", &deviation_of);
+  emscripten::function("limitToFaces", &limit_to_faces_of);
+  emscripten::function("measure", &measured);
+}
