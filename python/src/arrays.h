@@ -131,6 +131,14 @@ py::array value_view(const V& value, py::handle owner) {
                            owner);  // NOLINT
 }
 
+/// Objects of a class, each a copy.
+template <class T>
+py::list list_of(const std::vector<T>& values) {
+  py::list result;
+  for (const T& value : values) result.append(value);
+  return result;
+}
+
 inline py::tuple pair_of(const Interval& interval) { return py::make_tuple(interval.lower, interval.upper); }
 
 // Options.

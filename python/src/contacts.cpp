@@ -1,4 +1,4 @@
-// Where a surface meets itself.
+// Where surfaces touch, and where one meets itself.
 
 #include <snug/contacts.h>
 #include <snug/evaluate.h>
@@ -7,6 +7,7 @@
 
 #include "answers.h"
 #include "call.h"
+#include "poses.h"
 #include "state.h"
 #include "surface.h"
 #include "witness.h"
@@ -15,6 +16,16 @@ namespace snug {
 
 using python::Either;
 
+auto members_of(Either<ContactRegion> auto& t) {
+  return std::tie(t.verdict, t.contacts, t.owners[0], t.owners[1], t.box, t.distance, t.witness);
+}
+auto members_of(Either<IntersectionCurve> auto& t) {
+  return std::tie(t.points, t.boxes, t.closed, t.proved, t.at_border, t.error, t.region);
+}
+auto members_of(Either<ContactArea> auto& t) { return std::tie(t.points, t.error, t.faces, t.region); }
+auto members_of(Either<Contacts> auto& t) {
+  return std::tie(t.outcome, t.exhaustive, t.regions, t.curves, t.areas, t.open, t.stats, t.compared);
+}
 auto members_of(Either<SelfContact> auto& t) {
   return std::tie(t.verdict, t.pairs, t.stars, t.pair_tests, t.radius, t.levels, t.outcome);
 }
@@ -23,6 +34,163 @@ auto members_of(Either<SelfContact> auto& t) {
 
 namespace snug::python {
 namespace {
+
+// All contacts of two surfaces.
+
+Contacts contacts_of(const PySurface& py_a, const PySurface& py_b, const py::object& pose_a,
+                     const py::object& pose_b, const py::object& within, const py::object& error, bool curves,
+                     const py::object& max_splits, const py::object& threads, const py::object& progress,
+                     const py::object& rigid) {
+  const Surface a = py_a.surface(), b = py_b.surface();
+  const PlacedSurface placed_a(a, pose_of(pose_a, "pose_a", rigid)),
+      placed_b(b, pose_of(pose_b, "pose_b", rigid));
+  const double size = std::max(a.size(), b.size());
+  ContactsOptions options;
+  options.within = length_of(within, size, "within");
+  options.error = length_of(error, size, "error");
+  options.curves = curves;
+  Call call(progress, run_of(threads, max_splits));
+  return call.run([&](const Run& run) { return contacts(placed_a, placed_b, options, run); });
+}
+
+// (n, 2, 3): lower and upper corners, as boxes() has them.
+template <class T>
+py::array boxes_of(const std::vector<T>& rows, const py::object& owner) {
+  static_assert(sizeof(Box3) == 6 * sizeof(double));
+  static constexpr double none = 0;
+  const double* const data = rows.empty() ? &none : &rows[0].box.lower.x;
+  return read_only<double>({static_cast<py::ssize_t>(rows.size()), 2, 3},
+                           {sizeof(T), 3 * sizeof(double), sizeof(double)}, data, owner);
+}
+
+void add_regions(py::module_& module) {
+  AnswerClass<ContactRegion> regions(module, "ContactRegions", "Connected parts of a contact, n in all.");
+  regions
+      .list(
+          "verdict", [](const ContactRegion& t) { return py::str(name_of(t.verdict)); },
+          "'intersecting': proved. 'within': the points are at most `within` apart. 'undecided': there may "
+          "be no "
+          "contact\n"
+          "here.")
+      .view(
+          "lower", [](const ContactRegion& t) -> const double& { return t.distance.lower; },
+          "Lower end of an interval that contains the least distance in the region, (n,).")
+      .view(
+          "upper", [](const ContactRegion& t) -> const double& { return t.distance.upper; },
+          "Upper end of it, (n,).")
+      .array<double>(
+          "box", {2, 3},
+          [](const ContactRegion& t, double* out) {
+            for (const Point3& p : {t.box.lower, t.box.upper}) {
+              for (std::size_t k = 0; k < 3; ++k) *out++ = p[k];
+            }
+          },
+          "Lower and upper corners of a box around all points in contact, (n, 2, 3).")
+      .list(
+          "owners",
+          [](const ContactRegion& t) {
+            py::tuple both(2);
+            for (std::size_t s = 0; s < 2; ++s)
+              both[s] = py::array_t<std::uint32_t>(static_cast<py::ssize_t>(t.owners[s].size()),
+                                                   t.owners[s].data());
+            return both;
+          },
+          "Faces of A and of B (of dual schemes vertices), a pair of uint32 arrays; of n regions a list.");
+  add_witness(regions, "The two closest points found, on A and on B, (n, 2, 3), world coordinates.");
+  regions.repr([](const ContactRegion& t) {
+    return std::string(name_of(t.verdict)) + ", distance " + text_of(t.distance);
+  });
+}
+
+void add_curve(py::module_& module) {
+  py::class_<IntersectionCurve> cls(
+      module, "IntersectionCurve",
+      "A curve in which two surfaces intersect: points, and boxes between them.");
+  cls.attr("__module__") = "snug";
+  add_state(cls);
+  cls.def_property_readonly(
+         "points",
+         [](const py::object& self) { return column(self.cast<const IntersectionCurve&>().points, self); },
+         "(n, 3); the first point of a closed curve is not repeated.")
+      .def_property_readonly(
+          "boxes",
+          [](const py::object& self) { return boxes_of(self.cast<const IntersectionCurve&>().boxes, self); },
+          "Box i contains the curve between points i and i + 1, of a closed curve the last one leads back, "
+          "(n, 2, "
+          "3).")
+      .def_property_readonly(
+          "closed", [](const IntersectionCurve& self) { return self.closed; }, "Does it end where it begins?")
+      .def_property_readonly(
+          "proved", [](const IntersectionCurve& self) { return self.proved; },
+          "Does each box contain one arc, and do consecutive arcs meet?")
+      .def_property_readonly(
+          "at_border",
+          [](const IntersectionCurve& self) { return py::make_tuple(self.at_border[0], self.at_border[1]); },
+          "Of an open curve: do its first and last point certainly lie on a border?")
+      .def_property_readonly(
+          "error", [](const IntersectionCurve& self) { return self.error; },
+          "Upper bound of the distance between curve and polyline, either way.")
+      .def_property_readonly(
+          "region", [](const IntersectionCurve& self) { return self.region; }, "Which region it is in.")
+      .def("__repr__", [](const IntersectionCurve& self) {
+        return "<snug.IntersectionCurve of " + std::to_string(self.points.size()) + " points" +
+               (self.closed ? ", closed" : "") + (self.proved ? ", proved>" : ">");
+      });
+}
+
+void add_area(py::module_& module) {
+  py::class_<ContactArea> cls(module, "ContactArea",
+                              "What a plane face of A and one of B that touch have in common.");
+  cls.attr("__module__") = "snug";
+  add_state(cls);
+  cls.def_property_readonly(
+         "points",
+         [](const py::object& self) { return column(self.cast<const ContactArea&>().points, self); },
+         "Corners of a convex polygon, ends of a segment, or a point, (n, 3).")
+      .def_property_readonly(
+          "error", [](const ContactArea& self) { return self.error; },
+          "Upper bound, per coordinate, of how far they are from the exact ones.")
+      .def_property_readonly(
+          "faces", [](const ContactArea& self) { return py::make_tuple(self.faces[0], self.faces[1]); },
+          "Of A and of B.")
+      .def_property_readonly(
+          "region", [](const ContactArea& self) { return self.region; }, "Which region it is in.")
+      .def("__repr__", [](const ContactArea& self) {
+        return "<snug.ContactArea of " + std::to_string(self.points.size()) + " points>";
+      });
+}
+
+void add_all_contacts(py::module_& module) {
+  add_regions(module);
+  add_curve(module);
+  add_area(module);
+  py::class_<Contacts> cls(module, "Contacts", "All contacts of two surfaces.");
+  cls.attr("__module__") = "snug";
+  add_state(cls);
+  cls.def_property_readonly(
+         "exhaustive", [](const Contacts& self) { return self.exhaustive; },
+         "Do the lists hold all contacts? Not where the budget ended first.")
+      .def_property_readonly(
+          "outcome", [](const Contacts& self) { return name_of(self.outcome); },
+          "'complete', or 'budget-spent' or 'at-rounding' where pieces stayed coarser than requested.")
+      .def_property_readonly(
+          "regions", [](const Contacts& self) { return Answers<ContactRegion>(self.regions); },
+          "ContactRegions.")
+      .def_property_readonly(
+          "curves", [](const Contacts& self) { return list_of(self.curves); }, "A list of IntersectionCurve.")
+      .def_property_readonly(
+          "areas", [](const Contacts& self) { return list_of(self.areas); }, "A list of ContactArea.")
+      .def_property_readonly(
+          "open", [](const py::object& self) { return boxes_of(self.cast<const Contacts&>().open, self); },
+          "Boxes in which the surfaces may meet in an unresolved way, (n, 2, 3).")
+      .def("__repr__", [](const Contacts& self) {
+        return "<snug.Contacts: " + std::to_string(self.regions.size()) + " regions, " +
+               std::to_string(self.curves.size()) + " curves, " + std::to_string(self.areas.size()) +
+               " areas, " + std::to_string(self.open.size()) + " open boxes>";
+      });
+}
+
+// One surface and itself.
 
 SelfContact met_itself(const PySurface& self, const py::object& within, const py::object& radius,
                        const py::object& levels, const py::object& max_splits, const py::object& threads,
@@ -109,10 +277,24 @@ void add_self_contact(py::module_& module) {
 }  // namespace
 
 void add_contacts(py::class_<PySurface>& surface, py::module_& module) {
+  add_all_contacts(module);
   add_pairs(module);
   add_self_contact(module);
   using py::arg;
   const py::object none = py::none();
+  module.def(
+      "contacts", &contacts_of, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none, arg("pose_b") = none,
+      arg("within") = none, arg("error") = none, arg("curves") = true, arg("max_splits") = none,
+      arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+      "Where do two limit surfaces touch, and along which curves do they intersect?\n\n"
+      "pose_a, pose_b: one pose each, as collide() takes it. within: points this close are in contact. "
+      "error: how far a curve\n"
+      "may be from its polyline. Both are mesh units, or percent of the larger surface's size, by default "
+      "0.1 %. curves:\n"
+      "look for them. max_splits: most pairs of pieces compared.\n\n"
+      "Guarantee: if `exhaustive`, points at most `within` apart lie on faces of a region, and common points "
+      "in a box of a\n"
+      "curve, an area, or an open box. Raises ValueError, PoseError, MeshError, OverflowError.");
   surface
       .def("self_contact", &met_itself, py::kw_only(), arg("within") = none, arg("radius") = none,
            arg("levels") = none, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,

@@ -25,12 +25,6 @@ Vector3 vector_of(const py::object& given, const char* what) {
   return {x, y, z};
 }
 
-Motion pose_of(const py::object& given, const char* name, const py::object& rigid) {
-  const Poses poses(given, name, rigid);
-  if (poses.count()) throw py::value_error(std::string(name) + ": give one pose");
-  return poses.at(0);
-}
-
 // An object that __new__ alone made has zeros for a pose.
 const Trajectory& made(const Trajectory& trajectory) {
   if (trajectory.start().numbers() == std::array<double, 12>{}) {

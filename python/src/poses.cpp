@@ -139,10 +139,14 @@ Motion Poses::mended(std::size_t i, std::string_view fault) const {
   return {};
 }
 
+Motion pose_of(const py::object& given, const char* name, const py::object& rigid) {
+  const Poses poses(given, name, rigid);
+  if (poses.count()) refuse(std::string(name) + ": give one pose");
+  return poses.at(0);
+}
+
 py::object matrix_of_pose(const py::object& given, const std::string& name, const py::object& rigid) {
-  const Poses poses(given, name.c_str(), rigid);
-  if (poses.count()) refuse(name + ": give one pose");
-  return matrix_of(poses.at(0));
+  return matrix_of(pose_of(given, name.c_str(), rigid));
 }
 
 py::object matrix_of(const Motion& motion) {

@@ -49,6 +49,8 @@ class Poses {
   std::optional<Doubles> numbers_, translations_;
 };
 
+/// One pose. Errors: those of Poses; ValueError for more than one.
+[[nodiscard]] Motion pose_of(const py::object& given, const char* name, const py::object& rigid);
 /// The pose as the doubles that queries take, (4, 4). Errors: those of Poses; ValueError for more than one.
 [[nodiscard]] py::object matrix_of_pose(const py::object& given, const std::string& name,
                                         const py::object& rigid);

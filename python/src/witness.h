@@ -23,6 +23,7 @@ inline const WitnessPoints* witness_of(const TimeOfContact& answer) {
 }
 inline const WitnessPoints* witness_of(const Distance& answer) { return &answer.witness; }
 inline const WitnessPoints* witness_of(const SelfContactPair& answer) { return &answer.points; }
+inline const WitnessPoints* witness_of(const ContactRegion& answer) { return &answer.witness; }
 
 /// Where these lie.
 template <class T>

@@ -73,7 +73,7 @@ def test_solids_and_options():
 def test_motions(tmp_path):
     files = MODELS / "bracket.obj", MODELS / "pin.obj"
     a, b = map(snug.read, files)
-    poses = [moved(0, 0, 2), turned(30, 0.1, 0, 1), turned(80, 0, 0, 0.2)]
+    poses = [moved(0, 0, 2), turned(30, 0.1, 0, 1), moved(0, 0, 0.5)]
     (tmp_path / "path.txt").write_text("".join(text(pose) + "\n" for pose in poses))
     for document, answer in (
         (output_of("time-of-contact", *files, "--path-b", tmp_path / "path.txt"), snug.time_of_contact(a, None, b, poses)),
@@ -84,6 +84,21 @@ def test_motions(tmp_path):
     ):
         assert [document["verdict"], document["outcome"], document["steps"]] == [answer.verdict, answer.outcome, answer.steps]
         same_pair({**document, "distance": document["time"]}, answer)
+
+
+def test_all_contacts():
+    files = MODELS / "bracket.obj", MODELS / "pin.obj"
+    a, b = map(snug.read, files)
+    document = output_of("collide", *files, "--place-b", text(moved(0, 0, 0.5)), "--all")
+    found = snug.contacts(a, b, pose_b=moved(0, 0, 0.5))
+    assert document["exhaustive"] == found.exhaustive and len(document["open"]) == len(found.open)
+    for one, curve in zip(document["curves"], found.curves):
+        assert [one["points"], one["closed"], one["proved"], one["error"]] == [curve.points.tolist(), curve.closed, curve.proved, curve.error]
+        assert [each["box"] for each in one["boxes"]] == curve.boxes.tolist()
+    for i, one in enumerate(document["regions"]):
+        region = found.regions[i]
+        assert [one["verdict"], one["distance"], one["box"]] == [region.verdict, [region.lower, region.upper], region.box.tolist()]
+        assert [one["witness"], one["owners_a"]] == [region.points.tolist(), region.owners[0].tolist()]
 
 
 @pytest.mark.parametrize("scheme", ["catmark", "bilinear", "midedge"])

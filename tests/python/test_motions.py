@@ -80,6 +80,31 @@ def test_a_surface_and_itself(cube):
         cube.self_contact(radius=1)
 
 
+def test_all_contacts(bracket, pin):
+    found = snug.contacts(bracket, pin, pose_b=moved(0, 0, 0.5))
+    assert found.exhaustive and found.outcome == "complete" and len(found.regions) > 0 and len(found.curves) > 0
+    assert len(found.regions.verdict) == len(found.regions) and found.regions.box.shape == (len(found.regions), 2, 3)
+    for curve in found.curves:
+        n = len(curve.points)
+        assert curve.boxes.shape == (n if curve.closed else n - 1, 2, 3) and curve.region < len(found.regions)
+        for point in curve.points[:: max(1, n // 5)]:
+            assert bracket.closest_point(point).lower <= curve.error and pin.closest_point(point - [0, 0, 0.5]).lower <= curve.error
+        lower, upper = curve.boxes[0]
+        assert (lower <= curve.points[0]).all() and (curve.points[0] <= upper).all()
+    again = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(again.curves[0].points, found.curves[0].points)
+    assert again.regions.owners[0][0].tolist() == found.regions.owners[0][0].tolist()
+    assert len(snug.contacts(bracket, pin, pose_b=moved(9)).regions) == 0
+    # Boxes on each other share a face, in halves where it is cut in two.
+    box = snug.Surface(CUBE, CUBE_FACES, scheme="bilinear")
+    on = snug.contacts(box, box, pose_b=moved(0.5, 0.25, 2))
+    assert on.outcome == "complete" and len(on.areas) == 1 and len(on.open) == 0
+    corners = on.areas[0].points
+    assert on.areas[0].error == 0 and {tuple(p) for p in corners.tolist()} == {(-0.5, -0.75, 1), (1, -0.75, 1), (1, 1, 1), (-0.5, 1, 1)}
+    with pytest.raises(ValueError, match="one pose"):
+        snug.contacts(bracket, pin, pose_b=[moved(), moved()])
+
+
 def test_how_far_the_surface_is_from_its_faces(cube):
     apart = cube.limit_to_faces()
     points = cube.evaluate(np.repeat(np.arange(6), 25), np.tile(np.linspace(0, 1, 5), 30), np.tile(np.repeat(np.linspace(0, 1, 5), 5), 6)).point
