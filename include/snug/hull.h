@@ -89,11 +89,10 @@ struct EnvelopeOptions {
 struct Envelope {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  double error = 0, clearance = 0;  ///< those that were asked for
-  std::vector<std::uint32_t>
-      bridges;                 ///< with a gap: triangles across what it fills, in order; not within `error`,
-  double bridge_distance = 0;  ///< but no point of them is farther than this from the surfaces
-  Interval volume;             ///< contains it, as Measures::volume does
+  double error = 0, clearance = 0;      ///< those that were asked for
+  std::vector<std::uint32_t> bridges;   ///< with a gap: triangles across what it fills; not within `error`,
+  double bridge_distance = 0;           ///< but no point of them is farther than this from the surfaces
+  Interval volume;                      ///< contains it, as Measures::volume does
   Outcome outcome = Outcome::complete;  ///< do all guarantees of envelope() hold? Else they may not
   std::vector<HullProblem> problems;    ///< unless `complete`, some of the failures
 };
@@ -108,8 +107,7 @@ struct Envelope {
 /// Budget:    4,000,000 cubes in which it is sampled, some (area / error^2); 200 bytes each, and as much for pieces.
 /// Errors:    InputError: (value) without surfaces, for lengths out of range, and an error too small for doubles or floats;
 ///            (refused) if a mesh has no face with a limit surface; (unrepresentable). Interrupted.
-/// Cost:      some 5 microseconds a cube; three times that with a gap.
-/// Source:    derivations/envelopes.md.
+/// Cost:      some 5 microseconds a cube; three times that with a gap. Source: derivations/envelopes.md.
 [[nodiscard]] SNUG_API Envelope envelope(std::span<const PlacedSurface> parts,
                                          const EnvelopeOptions& options = {}, const Run& run = {});
 [[nodiscard]] SNUG_API Envelope envelope(const PlacedSurface& part, const EnvelopeOptions& options = {},
