@@ -135,6 +135,23 @@ TEST(feet, feet_on_narrow_triangles_are_the_nearest) {
   }
 }
 
+// Newton's method may end at another point: not too often for points of plane pieces whose parameters are uneven, which lie on them.
+TEST(feet, feet_on_bent_pieces_are_mostly_the_nearest) {
+  Draw draw(7);
+  constexpr std::array bends{0.15, 0.3, 0.6};
+  constexpr std::size_t trials = 3000;
+  std::size_t missed = 0;
+  for (std::size_t i = 0; i < trials; ++i) {
+    const auto plane = [&](double most) { return Vector3{draw.within(most), draw.within(most), 0}; };
+    const Point3 o = Point3{} + plane(1);
+    QuadraticTriangle q = flat_quadratic({o, o + plane(1), o + plane(1)});
+    for (Point3& m : q.middles) m = m + plane(bends[i % bends.size()]);
+    const PieceSet set(std::vector<QuadraticTriangle>{q});
+    missed += foot_on(set, 0, point_of(q, draw.parameter())).distance > 1e-4;
+  }
+  EXPECT_LT(100 * missed, 9 * trials);
+}
+
 TEST(feet, below_is_the_restriction_to_feet) {
   Draw draw(4);
   for (int i = 0; i < 1000; ++i) {
