@@ -199,9 +199,11 @@ class Chunk {
         if (feet[k].piece != piece) feet[k] = foot_on(other_, piece, quadratic_.corners[k]);
         if (!known) to_piece[i][k] = feet[k].distance;
       }
+      const double geometric = compare_with(part, feet);
+      if (now_.upper <= goal()) break;
       // From one foot nothing is farther than the part is large beyond its own distance. If the piece's part below is, it comes back
       // to where it was, and feet are on different sheets of it.
-      torn = farthest_from(part.feet[i].point) < compare_with(part, feet);
+      torn = farthest_from(part.feet[i].point) < geometric;
       if (torn) {
         compare_with(part, {part.feet[i], part.feet[i], part.feet[i]});
         for (std::size_t k = 0; k < 3; ++k) {
