@@ -103,8 +103,11 @@ void sign(py::handle object) {
   record->def->ml_doc = strdup(text.c_str());
   // Functions of no arguments have no names to tell of.
   if (record->args.empty()) return;
-  dispatcher = reinterpret_cast<PyCFunctionWithKeywords>(record->def->ml_meth);  // NOLINT
-  record->def->ml_meth = reinterpret_cast<PyCFunction>(call);                    // NOLINT
+  // By way of a type that compilers take for any function's.
+  using Any = void (*)();
+  dispatcher =
+      reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<Any>(record->def->ml_meth));  // NOLINT
+  record->def->ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<Any>(call));           // NOLINT
 }
 
 /// A class is called as its constructor is.
