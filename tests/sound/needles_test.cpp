@@ -215,7 +215,7 @@ TEST(needles, through_each_other_are_never_called_apart) {
         closest_point(b, b.mesh().points[corner], {.absolute = {}, .relative = 1e-3}, {.max_splits = 2000});
     ASSERT_EQ(at_corner.distance.lower, 0) << here.text;
   }
-  EXPECT_GT(intersecting, count / 25);
+  EXPECT_GE(intersecting, count / 25);
 }
 
 }  // namespace

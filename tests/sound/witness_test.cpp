@@ -82,7 +82,7 @@ TEST(witnesses, lie_where_they_say_with_every_scheme) {
       asked += 3;
     }
   });
-  EXPECT_GT(asked, 1000u);
+  EXPECT_GT(asked, testing::share(1000));
 }
 
 // The twin's lattice around a place: an owner, corner or order of u and v that is wrong is far off.

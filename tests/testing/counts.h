@@ -6,15 +6,19 @@
 /// How many random cases a test draws; docs/debugging.md has the variables.
 namespace snug::testing {
 
-/// Under sanitizers, which look at what code does and not at numbers, a quarter of the usual cases, and else half of them if
-/// SNUG_HALF is set; rounded up.
-[[nodiscard]] inline std::uint64_t fewer(std::uint64_t usual) {
+/// Under sanitizers, which look at what code does and not at numbers, a quarter of the usual cases, rounded up.
+[[nodiscard]] constexpr std::uint64_t fewer(std::uint64_t usual) {
 #ifdef SNUG_SANITIZED
   return (usual + 3) / 4;
 #else
-  static const bool half = std::getenv("SNUG_HALF") != nullptr;
-  return half ? (usual + 1) / 2 : usual;
+  return usual;
 #endif
+}
+
+/// The same, and else half of them where SNUG_HALF is set: numbers of random cases, and what these must have met.
+[[nodiscard]] inline std::uint64_t share(std::uint64_t usual) {
+  static const bool half = fewer(4) == 4 && std::getenv("SNUG_HALF") != nullptr;
+  return half ? (usual + 1) / 2 : fewer(usual);
 }
 
 /// Is case `number` to be tried? All are but for sanitizers, which take every fifth.
@@ -30,11 +34,11 @@ namespace snug::testing {
 /// Is this the long check, where SNUG_TIMES is set? It tries all combinations, where the usual one tries all pairs by turns.
 [[nodiscard]] inline bool long_check() { return std::getenv("SNUG_TIMES") != nullptr; }
 
-/// The number that the environment gives, or the usual one, SNUG_TIMES times as large if that is set, or fewer.
+/// The number that the environment gives, or the usual one, SNUG_TIMES times as large if that is set, or a share.
 [[nodiscard]] inline std::uint64_t number_of(const char* variable, std::uint64_t usual) {
   if (const char* const text = std::getenv(variable)) return std::strtoull(text, nullptr, 10);
   const char* const times = std::getenv("SNUG_TIMES");
-  return times ? usual * std::strtoull(times, nullptr, 10) : fewer(usual);
+  return times ? usual * std::strtoull(times, nullptr, 10) : share(usual);
 }
 
 }  // namespace snug::testing
