@@ -140,6 +140,12 @@ std::optional<Contacts> all_contacts(const Options& options, double tolerance, d
   return contacts(pair.a(), pair.b(), {.within = tolerance, .error = precision}, run_of(options, monitor));
 }
 
+void prove_contact(Collision& answer) {
+  answer.verdict = Verdict::intersecting;
+  answer.outcome = Outcome::complete;
+  answer.distance = {0, 0};
+}
+
 // Fills the row, and writes the fields where they are wanted.
 void write_to(const Collision& found, const SceneRun& run, const ScenePair& pair, SceneAnswer& answer,
               JsonWriter* json) {
@@ -219,13 +225,15 @@ ExitStatus run(const Options& options) {
   Collision answer = collide(pair.a(), pair.b(), wanted, certificate.with(run_of(options, monitor)));
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, {.monitor = &monitor});
-  if (depth && depth->depth.lower > 0) {
-    answer.verdict = Verdict::intersecting;
-    answer.outcome = Outcome::complete;
-    answer.distance = {0, 0};
-  }
+  if (depth && depth->depth.lower > 0) prove_contact(answer);
   const std::optional<Contacts> all =
       all_contacts(options, *wanted.tolerance, precision.in_mesh_units(pair.size()), pair, monitor);
+  // A curve, a crossing or an area proves what the verdict alone may not.
+  if (all && std::any_of(all->regions.begin(), all->regions.end(), [](const ContactRegion& region) {
+        return region.verdict == Verdict::intersecting;
+      })) {
+    prove_contact(answer);
+  }
   std::optional<AtomicFile> curves;
   if (all && !options.curves.empty()) write_curves(all->curves, curves.emplace(options.curves));
   if (report.json()) {

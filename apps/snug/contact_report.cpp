@@ -154,7 +154,7 @@ std::vector<std::string> contact_lines(const Sides& sides, const Contacts& found
   } else if (found.outcome != Outcome::complete) {
     lines.emplace_back(found.outcome == Outcome::budget_spent
                            ? "coarser than asked: the budget ended; give a larger --max-splits"
-                           : "coarser than asked: surfaces lie in each other");
+                           : "coarser than asked: surfaces lie in each other, or touch where a curve passes");
   }
   return lines;
 }

@@ -58,8 +58,7 @@ class AnswerClass {
       : class_(module, name, doc), name_(name) {
     class_.attr("__module__") = "snug";
     class_.def("__len__", [](const Self& self) {
-      if (self.single())
-        throw py::type_error("a single answer has no length and no truth value; see its numbers");
+      if (self.single()) throw py::type_error("a single answer has no length; see its numbers");
       return self.all().size();
     });
     class_.def("__getitem__", [](const Self& self, py::ssize_t i) {

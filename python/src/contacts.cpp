@@ -63,6 +63,22 @@ py::array boxes_of(const std::vector<T>& rows, const py::object& owner) {
                            {sizeof(T), 3 * sizeof(double), sizeof(double)}, data, owner);
 }
 
+std::string number_of(std::size_t count, const std::string& one, const std::string& many = "") {
+  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+bool touches(const Contacts& self) {
+  for (const ContactRegion& region : self.regions) {
+    if (region.verdict != Verdict::undecided) return true;
+  }
+  if (!self.regions.empty() || !self.exhaustive) {
+    refuse_undecided("undecided: " + number_of(self.regions.size(), "region") +
+                     " in which nothing is proved, see .regions" +
+                     (self.exhaustive ? "" : "; give a larger max_splits"));
+  }
+  return false;
+}
+
 void add_regions(py::module_& module) {
   AnswerClass<ContactRegion> regions(module, "ContactRegions", "Connected parts of a contact, n in all.");
   regions
@@ -164,7 +180,9 @@ void add_all_contacts(py::module_& module) {
   add_regions(module);
   add_curve(module);
   add_area(module);
-  py::class_<Contacts> cls(module, "Contacts", "All contacts of two surfaces.");
+  py::class_<Contacts> cls(module, "Contacts",
+                           "All contacts of two surfaces. bool() is True if one is proved, False if there is "
+                           "none, and raises\nUndecidedError else.");
   cls.attr("__module__") = "snug";
   add_state(cls);
   cls.def_property_readonly(
@@ -183,10 +201,11 @@ void add_all_contacts(py::module_& module) {
       .def_property_readonly(
           "open", [](const py::object& self) { return boxes_of(self.cast<const Contacts&>().open, self); },
           "Boxes in which the surfaces may meet in an unresolved way, (n, 2, 3).")
+      .def("__bool__", touches)
       .def("__repr__", [](const Contacts& self) {
-        return "<snug.Contacts: " + std::to_string(self.regions.size()) + " regions, " +
-               std::to_string(self.curves.size()) + " curves, " + std::to_string(self.areas.size()) +
-               " areas, " + std::to_string(self.open.size()) + " open boxes>";
+        return "<snug.Contacts: " + number_of(self.regions.size(), "region") + ", " +
+               number_of(self.curves.size(), "curve") + ", " + number_of(self.areas.size(), "area") + ", " +
+               number_of(self.open.size(), "open box", "open boxes") + ">";
       });
 }
 
@@ -207,8 +226,8 @@ SelfContact met_itself(const PySurface& self, const py::object& within, const py
 
 bool meets(const SelfContact& self) {
   if (self.verdict == SelfVerdict::undecided) {
-    refuse_undecided("undecided: " + std::to_string(self.pairs.size()) +
-                     " places could not be proved apart, see .pairs" +
+    refuse_undecided("undecided: " + number_of(self.pairs.size(), "place") +
+                     " could not be proved apart, see .pairs" +
                      (self.outcome == Outcome::budget_spent ? "; give a larger max_splits" : ""));
   }
   return self.verdict != SelfVerdict::clear;
@@ -270,7 +289,7 @@ void add_self_contact(py::module_& module) {
       .def("__bool__", meets)
       .def("__repr__", [](const SelfContact& self) {
         return std::string("<snug.SelfContact ") + name_of(self.verdict) +
-               (self.pairs.empty() ? "" : ", " + std::to_string(self.pairs.size()) + " places") + ">";
+               (self.pairs.empty() ? "" : ", " + number_of(self.pairs.size(), "place")) + ">";
       });
 }
 

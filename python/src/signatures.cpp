@@ -47,8 +47,10 @@ std::string fault_of(const Record& record, const py::tuple& given, const py::dic
   }
   const std::size_t own = record.is_method ? 1 : 0;
   if (given.size() > record.nargs_pos) {
-    return "takes at most " + std::to_string(record.nargs_pos - own) + " by position, not " +
-           std::to_string(given.size() - own);
+    return "takes " +
+           (record.nargs_pos == own ? std::string("none")
+                                    : "at most " + std::to_string(record.nargs_pos - own)) +
+           " by position, not " + std::to_string(given.size() - own);
   }
   std::string types;
   for (std::size_t i = own; i < record.args.size(); ++i) {

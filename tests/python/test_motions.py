@@ -94,7 +94,9 @@ def test_all_contacts(bracket, pin):
     again = pickle.loads(pickle.dumps(found))
     np.testing.assert_array_equal(again.curves[0].points, found.curves[0].points)
     assert again.regions.owners[0][0].tolist() == found.regions.owners[0][0].tolist()
-    assert len(snug.contacts(bracket, pin, pose_b=moved(9)).regions) == 0
+    assert bool(found) and not snug.contacts(bracket, pin, pose_b=moved(9))
+    with pytest.raises(snug.UndecidedError):
+        bool(snug.contacts(bracket, pin, pose_b=moved(0, 0, 0.5), max_splits=0))
     # Boxes on each other share a face, in halves where it is cut in two.
     box = snug.Surface(CUBE, CUBE_FACES, scheme="bilinear")
     on = snug.contacts(box, box, pose_b=moved(0.5, 0.25, 2))

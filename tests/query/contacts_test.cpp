@@ -391,5 +391,45 @@ TEST(contacts, can_do_without_curves) {
   for (const ContactRegion& region : found.regions) EXPECT_EQ(region.verdict, Verdict::intersecting);
 }
 
+// Boxes whose edges cross at round places have open boxes at all of them; a curve through such a box is not as fine as asked.
+TEST(contacts, are_complete_only_if_curves_are_as_fine_as_asked) {
+  const Surface box(testing::control_mesh(meshes::cube()), {.scheme = Scheme::bilinear});
+  int complete = 0;
+  for (const double x : {0.5, 0.3, 0.75}) {
+    for (const double z : {0.7, 0.37}) {
+      const ContactsOptions options{.error = 1e-3};
+      const Contacts found =
+          contacts(box, {box, Motion::translation({x, 0.5, z})}, options, {.max_splits = 20'000});
+      if (found.outcome != Outcome::complete) continue;
+      ++complete;
+      for (const IntersectionCurve& curve : found.curves) {
+        for (const CurveBox& part : curve.boxes) {
+          for (std::size_t k = 0; k < 3 && !part.one_arc; ++k)
+            EXPECT_LE(part.box.upper[k] - part.box.lower[k], 1.001e-3) << x << " " << z;
+        }
+      }
+    }
+  }
+  RecordProperty("complete", complete);
+}
+
+// Halves of faces that touch, of which no pieces have overlapping boxes.
+TEST(contacts, of_narrow_faces_that_touch_at_a_corner_fit_doubles) {
+  const auto triangle = [](std::array<Point3, 3> points) {
+    ControlMesh mesh;
+    mesh.points.assign(points.begin(), points.end());
+    mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
+    return Surface(mesh, {.scheme = Scheme::bilinear});
+  };
+  const Surface a = triangle({Point3{0, -1, 0}, {0, 0, 0}, {-1, 1, 0}}),
+                b = triangle({Point3{0, 0, 0}, {-1, 1, 0}, {0, -1e-6, -1e-6}});
+  for (const bool curves : {true, false}) {
+    const Contacts found = contacts(a, b, {.within = 0, .curves = curves});
+    ASSERT_EQ(found.areas.size(), 1u);
+    EXPECT_EQ(found.areas[0].points.size(), 2u) << "the edge from 0 0 0 to -1 1 0";
+    for (const ContactRegion& region : found.regions) EXPECT_TRUE(std::isfinite(region.distance.upper));
+  }
+}
+
 }  // namespace
 }  // namespace snug::contacts_test

@@ -276,7 +276,7 @@ TEST(deforming_contact, says_what_it_cannot_do) {
   EXPECT_NE(refusal(end).find("do not fit doubles"), std::string::npos) << refusal(end);
   const Trajectory path = Trajectory::through(
       std::vector<Motion>{Motion(), Motion::translation({1, 0, 0}), Motion::translation({2, 0, 0})});
-  EXPECT_NE(refusal(mesh.points, path).find("one where control points move"), std::string::npos);
+  EXPECT_NE(refusal(mesh.points, path).find("one unit of time where control points move"), std::string::npos);
 }
 
 }  // namespace

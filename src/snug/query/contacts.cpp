@@ -324,7 +324,8 @@ class ContactsSearch {
       upper = std::min(upper, distance.upper);
       // Points farther than the tolerance from the other piece are in no contact.
       for (std::size_t s = 0; s < 2; ++s) {
-        box.add(common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_)));
+        const Box3 common = common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_));
+        if (!common.empty()) box.add(common);
       }
       if (item.distance.upper < near_[nearest].distance.upper) nearest = i;
       arc = std::min(arc, item.arc);
@@ -337,6 +338,7 @@ class ContactsSearch {
       std::sort(owners.begin(), owners.end());
       owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
     }
+    if (box.empty()) box = near_[nearest].boxes[0];  // no pair of pieces has points so near
     region.box = unscaled(box, frames_.to_mesh_units());
     region.distance = {lower, upper};
     if (arc != ChainArc::none) {
@@ -350,8 +352,13 @@ class ContactsSearch {
   [[nodiscard]] Interval distance_of(const ContactPair& item) const {
     const PowerOfTwo back = frames_.to_mesh_units();
     if (item.crossing) return {0, 0};
-    return {unscaled_down(item.distance.lower, back),
-            require_representable(unscaled_up(item.distance.upper, back))};
+    double upper = item.distance.upper;
+    if (!(upper < INFINITY)) {  // nobody looked for near points
+      Box3 both = item.boxes[0];
+      both.add(item.boxes[1]);
+      upper = enlarged(length(both.upper - both.lower));
+    }
+    return {unscaled_down(item.distance.lower, back), require_representable(unscaled_up(upper, back))};
   }
   [[nodiscard]] static Verdict verdict_of(const ContactPair& item) {
     return item.crossing ? Verdict::intersecting : item.within ? Verdict::within : Verdict::undecided;
@@ -434,6 +441,8 @@ class ContactsSearch {
         if (gap != nullptr) {
           curve.points.push_back(point(out));
           box(*gap, false);
+          if (longest_side(*gap) > frames_.length_down(*options_.error))
+            answer_.outcome = worse(answer_.outcome, Outcome::at_rounding);
           const Vector3 sides = gap->upper - gap->lower;
           error = std::max(error, enlarged(length(sides)));
         } else if (last && !chain.closed) {

@@ -551,9 +551,10 @@ TimeOfContact time_of_contact(const DeformingSurface& surface_a, const Deforming
   const double ends_a = a.motion.duration(), ends_b = b.motion.duration();
   const bool deforms = !a.end.empty() || !b.end.empty();
   const double ends = std::max({ends_a, ends_b, deforms ? 1.0 : 0.0});
-  require_value((ends_a == ends || ends_a == 0) && (ends_b == ends || ends_b == 0) && (!deforms || ends == 1),
-                "time of contact: the motions last for different times; give both the same number of pieces, "
-                "and one where control points move");
+  require_value(
+      (ends_a == ends || ends_a == 0) && (ends_b == ends || ends_b == 0) && (!deforms || ends == 1),
+      "time of contact: the motions last for different times; let one stay, or both last equally long, "
+      "one unit of time where control points move");
   if (options.solid) {
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
