@@ -34,7 +34,7 @@ struct Found {
   double bridge_distance = 0;
 };
 
-// What is wrapped: a surface, or the parts of a scene.
+// The surfaces to wrap: one, or the parts of a scene.
 struct Wrapped {
   std::string name;  // of the file
   std::vector<std::string> meshes, schemes;

@@ -66,7 +66,7 @@ class TimeLimit {
   std::thread watch_;
 };
 
-// What a question was answered with: a word, and a line for people.
+// The answer to a question: a word, and a line for people.
 struct Answer {
   const char* question;
   std::string word{}, text{};

@@ -13,7 +13,7 @@
 
 namespace snug::command {
 
-/// What is known of a mesh, a broken one too, and of its surface, before any question.
+/// A mesh, a broken one too, and its surface, as far as they are known before any question.
 struct MeshSummary {
   Scheme scheme;
   MeshCounts counts;

@@ -56,7 +56,7 @@ HWY_INLINE Deepest compare(const WalkedTree& tree, const NodeBoxes& node, const 
     half[k] = view.scale * column[8 * (3 + k)];
   }
   const float size = own + 2 * view.scale * others + view.reach;
-  // What is not a number is near.
+  // NaN counts as near.
   if (!(size < 1e18F)) return {all, 0, INFINITY};
   const float doubt = walk_roundings * size + view.slack, limit = tree.distance + doubt;
   const Tag d;

@@ -21,7 +21,7 @@ class Gaps {
     if (!out_.missing.empty()) return;
     out_.missing = count_ == 1 ? what : "of answer " + std::to_string(answer) + ", counted from 0: " + what;
   }
-  // What was looked for in vain.
+  // The proof that was looked for in vain.
   void add(std::size_t answer, const std::string& what, Found found) {
     if (found == Found::proof) return;
     add(answer, what + (found == Found::too_many_leaves ? ": that would take more than 100,000 leaves"

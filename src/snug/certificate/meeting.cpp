@@ -51,7 +51,7 @@ class Ladder {
   std::vector<Disc> discs_;
 };
 
-// What crosses a disc: a piece of a surface, or a segment.
+// A piece of a surface or a segment that crosses a disc.
 struct Crossing {
   Ladder* ladder;
   std::size_t level;

@@ -31,7 +31,7 @@ class PlaneFacet {
   Projection to_;
 };
 
-/// What two facets have in common.
+/// The points that two facets have in common.
 struct FacetMeeting {
   enum class State : std::uint8_t {
     apart,     ///< nothing

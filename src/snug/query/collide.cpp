@@ -223,7 +223,7 @@ class CollideSearch {
   [[nodiscard]] std::uint64_t max_splits() const { return run_.max_splits.value_or(default_splits::collide); }
   [[nodiscard]] Frontier<NodePair>& open_pairs() { return frames_.cache(0).open_pairs(); }
 
-  // What is known of the distance.
+  // The distance, as far as it is known.
   struct Known {
     double lower = INFINITY;          // of what was passed over
     std::optional<PiecePair> pieces;  // whose quadratics came nearest

@@ -251,7 +251,7 @@ class ContactsSearch {
     for (const std::uint32_t contact : cut_.covered) near_[contact].kept = true;
   }
 
-  // What is compared exactly is decided.
+  // Pairs of facets are decided: they were compared exactly.
   void take_facets() {
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
       ContactPair& item = near_[i];

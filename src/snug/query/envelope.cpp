@@ -118,7 +118,7 @@ std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, 
 
 Point3 centre_of(const Triangle& t) { return t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0])); }
 
-// What was found out about points and triangles that collapses ask for again, by their coordinates; later ones take the places of
+// Answers about points and triangles that collapses ask for again, by their coordinates; later ones take the places of
 // former ones. No proof rests on it.
 class LookTable {
  public:

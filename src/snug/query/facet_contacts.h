@@ -22,7 +22,7 @@ class FacetContacts {
   /// `frames`: of a and b.
   FacetContacts(const PairFrames& frames, const PlacedBvh& a, const PlacedBvh& b);
 
-  /// What two owners have in common, in the units of the frames; null unless both are faces that can be compared exactly.
+  /// The points that two owners have in common, in the units of the frames; null unless both are faces that can be compared exactly.
   [[nodiscard]] const FacetMeeting* between(std::uint32_t a, std::uint32_t b);
 
   struct Touching {

@@ -60,7 +60,7 @@ struct PatchMeasures {
   bool stuck = false;  // in rounding, or at the end of the budget
 };
 
-// What is not known of pieces at corners is the gap of their area, and their area times size times a weight: that much moments err.
+// The unknown part of pieces at corners is the gap of their area, and their area times size times a weight: that much moments err.
 struct Goal {
   double gap, tips, weight;
 };
@@ -169,7 +169,7 @@ class PatchMeasurer {
     regular_.clear();
   }
 
-  // What is known of a net's piece.
+  // A net's piece, as far as it is known.
   void bound_area(Net& net) const {
     Box3 box;
     for (const auto& p : net.points) box.add(Point3{p[0], p[1], p[2]});

@@ -626,7 +626,7 @@ void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>&
       });
 }
 
-// What is needed no more goes before the result comes: both are largest now.
+// Memory that is needed no more is freed before the result is made: both are largest now.
 Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
   Tessellation result;
   result.error_bound = error_bound();

@@ -157,7 +157,7 @@ struct Accuracy {
   }
 };
 
-// What was done, and what is left of the budget, which each piece has anew.
+// The work that was done, and the rest of the budget, which each piece has anew.
 struct Work {
   const WorkMonitor& monitor;
   std::uint64_t budget, spent = 0;
@@ -227,7 +227,7 @@ struct Progress {
   }
 };
 
-// What is known of the surfaces at time 0.
+// The surfaces at time 0, as far as they are known.
 struct Start {
   bool apart = false;             // as surfaces
   std::optional<bool> outside{};  // of each other, once known

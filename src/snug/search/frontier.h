@@ -60,7 +60,7 @@ class Frontier {
     if constexpr (has_gap) ordering::push_heap(items_.data(), end_, farther);
   }
   [[gnu::noinline]] void make_room() {
-    // What was taken first_first makes room if it is half of all.
+    // Items that were taken make room once they are half of all.
     if (first_ > 0 && 2 * first_ >= end_) {
       std::copy(items_.begin() + static_cast<std::ptrdiff_t>(first_), items_.end(), items_.begin());
       end_ -= first_;

@@ -198,7 +198,7 @@ class TubeWalk {
     Verb look_at(const NodeGap& at) {
       const Node& node = at.node;
       const double begin = walk.near_.centre + static_cast<double>(at.gap) - walk.near_.rounding;
-      // What comes first begins behind all of the group.
+      // The first of the others begins behind all of the group.
       if (!leaves.empty() && begin > end_of_group) {
         resolve_leaves();
         if (done) return Verb::stop;
