@@ -117,7 +117,7 @@ void write_summary(Report& report, const Options& options, const Wrapped& wrappe
       json.null();
     }
     if (found.gap) {
-      json.key("bridges").begin_object().field("gap", *found.gap).field("triangles", found.bridges);
+      json.key("bridges").begin_object().field("diameter", *found.gap).field("triangles", found.bridges);
       json.field("distance", found.bridge_distance).end_object();
     }
   }

@@ -47,9 +47,11 @@ struct Box3 {
       if (p[axis] > upper[axis]) upper[axis] = p[axis];
     }
   }
-  [[gnu::always_inline]] constexpr void add(const Box3& box) {
-    add(box.lower);
-    add(box.upper);
+  [[gnu::always_inline]] constexpr void add(const Box3& box) {  // an empty one adds nothing
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (box.lower[axis] < lower[axis]) lower[axis] = box.lower[axis];
+      if (box.upper[axis] > upper[axis]) upper[axis] = box.upper[axis];
+    }
   }
   [[nodiscard, gnu::always_inline]] constexpr bool empty() const { return lower.x > upper.x; }
 };

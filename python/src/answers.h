@@ -101,6 +101,15 @@ class AnswerClass {
     return *this;
   }
 
+  /// Both ends of an interval that of(const T&) refers to.
+  template <class Of>
+  AnswerClass& interval(const Of& of, const char* lower_doc, const char* upper_doc) {
+    view(
+        "lower", [of](const T& t) -> const double& { return of(t).lower; }, lower_doc);
+    return view(
+        "upper", [of](const T& t) -> const double& { return of(t).upper; }, upper_doc);
+  }
+
   /// fill(const T&, Number*) writes as many numbers as `shape` has, for each answer.
   template <class Number, class Fill>
   AnswerClass& array(const char* name, std::vector<py::ssize_t> shape, const Fill& fill, const char* doc) {

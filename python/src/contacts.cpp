@@ -88,12 +88,9 @@ void add_regions(py::module_& module) {
           "be no "
           "contact\n"
           "here.")
-      .view(
-          "lower", [](const ContactRegion& t) -> const double& { return t.distance.lower; },
-          "Lower end of an interval that contains the least distance in the region, (n,).")
-      .view(
-          "upper", [](const ContactRegion& t) -> const double& { return t.distance.upper; },
-          "Upper end of it, (n,).")
+      .interval([](const ContactRegion& t) -> const Interval& { return t.distance; },
+                "Lower end of an interval that contains the least distance in the region, (n,).",
+                "Upper end of it, (n,).")
       .array<double>(
           "box", {2, 3},
           [](const ContactRegion& t, double* out) {
@@ -134,6 +131,15 @@ void add_curve(py::module_& module) {
           "Box i contains the curve between points i and i + 1, of a closed curve the last one leads back, "
           "(n, 2, "
           "3).")
+      .def_property_readonly(
+          "one_arc",
+          [](const py::object& self) {
+            return column(
+                std::span<const CurveBox>(self.cast<const IntersectionCurve&>().boxes),
+                [](const CurveBox& box) -> const bool& { return box.one_arc; }, self);
+          },
+          "Is it proved of each box that the surfaces cross in one arc there, from one point to the other? "
+          "(n,) bool.")
       .def_property_readonly(
           "closed", [](const IntersectionCurve& self) { return self.closed; }, "Does it end where it begins?")
       .def_property_readonly(
@@ -241,12 +247,9 @@ void add_pairs(py::module_& module) {
       .list(
           "verdict", [](const SelfContactPair& t) { return py::str(name_of(t.verdict)); },
           "'intersecting', 'near' or 'undecided'; of n pairs a list.")
-      .view(
-          "lower", [](const SelfContactPair& t) -> const double& { return t.distance.lower; },
-          "Lower end of an interval that contains the distance of the two pieces, (n,).")
-      .view(
-          "upper", [](const SelfContactPair& t) -> const double& { return t.distance.upper; },
-          "Upper end of it, (n,); both are 0 where the surface meets itself.")
+      .interval([](const SelfContactPair& t) -> const Interval& { return t.distance; },
+                "Lower end of an interval that contains the distance of the two pieces, (n,).",
+                "Upper end of it, (n,); both are 0 where the surface meets itself.")
       .array<bool>(
           "touching", {}, [](const SelfContactPair& t, bool* out) { *out = t.touching; },
           "Of facets: have they no point in common that is inside of both? (n,) bool.");

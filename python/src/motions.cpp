@@ -136,12 +136,9 @@ void add_time_of_contact(py::module_& module) {
           "'intersecting': they\n"
           "have a common point at some time from `lower` to `upper`. 'undecided': none of these could be "
           "shown.")
-      .view(
-          "lower", [](const TimeOfContact& t) -> const double& { return t.time.lower; },
-          "They have no common point before this time.")
-      .view(
-          "upper", [](const TimeOfContact& t) -> const double& { return t.time.upper; },
-          "The time at which they are found near each other; infinite if they are not.")
+      .interval([](const TimeOfContact& t) -> const Interval& { return t.time; },
+                "They have no common point before this time.",
+                "The time at which they are found near each other; infinite if they are not.")
       .view(
           "steps", [](const TimeOfContact& t) -> const int& { return t.steps; },
           "Number of times that were looked at.");

@@ -144,13 +144,10 @@ std::string note_of(Outcome outcome) {
 // Members that Collision and Distance have in common.
 template <class T>
 void add_common(AnswerClass<T>& answers) {
-  answers
-      .view(
-          "lower", [](const T& t) -> const double& { return t.distance.lower; },
-          "Lower end of the interval that contains the distance, (n,), mesh units.")
-      .view(
-          "upper", [](const T& t) -> const double& { return t.distance.upper; },
-          "Upper end of it, (n,), mesh units; infinite if no pair of points was near enough to matter.");
+  answers.interval(
+      [](const T& t) -> const Interval& { return t.distance; },
+      "Lower end of the interval that contains the distance, (n,), mesh units.",
+      "Upper end of it, (n,), mesh units; infinite if no pair of points was near enough to matter.");
   add_witness(
       answers,
       "The two closest points found, on A and on B, (n, 2, 3), world coordinates; NaN if there are none.");
@@ -254,12 +251,9 @@ void add_penetration(py::module_& module) {
       module, "Penetration",
       "How deeply two solids penetrate: the least length of a translation of B that separates them.");
   answers
-      .view(
-          "lower", [](const Penetration& t) -> const double& { return t.depth.lower; },
-          "No translation shorter than this separates them, (n,), mesh units.")
-      .view(
-          "upper", [](const Penetration& t) -> const double& { return t.depth.upper; },
-          "`translation` is at most this long, (n,), mesh units.")
+      .interval([](const Penetration& t) -> const Interval& { return t.depth; },
+                "No translation shorter than this separates them, (n,), mesh units.",
+                "`translation` is at most this long, (n,), mesh units.")
       .view(
           "translation", [](const Penetration& t) -> const Vector3& { return t.translation; },
           "Added to B's translation it separates them: proved, (n, 3). Zero if they are separated as they "

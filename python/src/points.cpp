@@ -106,12 +106,9 @@ void add_closest(py::module_& module) {
   AnswerClass<ClosestPoint> answers(module, "ClosestPoint",
                                     "The closest point of a surface: of one point, or of each of n.");
   answers
-      .view(
-          "lower", [](const ClosestPoint& t) -> const double& { return t.distance.lower; },
-          "Lower end of the interval that contains the distance, (n,), mesh units.")
-      .view(
-          "upper", [](const ClosestPoint& t) -> const double& { return t.distance.upper; },
-          "Upper end of it; `point` is at most so far away, (n,).")
+      .interval([](const ClosestPoint& t) -> const Interval& { return t.distance; },
+                "Lower end of the interval that contains the distance, (n,), mesh units.",
+                "Upper end of it; `point` is at most so far away, (n,).")
       .view(
           "point", [](const ClosestPoint& t) -> const Point3& { return t.point; },
           "A limit point close to the closest one, (n, 3).")
@@ -128,12 +125,9 @@ void add_closest(py::module_& module) {
       module, "SignedDistance",
       "How far one point, or each of n, is from a closed surface: negative inside.");
   signed_answers
-      .view(
-          "lower", [](const SignedDistance& t) -> const double& { return t.distance.lower; },
-          "Lower end of the interval that contains the signed distance, (n,), mesh units.")
-      .view(
-          "upper", [](const SignedDistance& t) -> const double& { return t.distance.upper; },
-          "Upper end of it, (n,).")
+      .interval([](const SignedDistance& t) -> const Interval& { return t.distance; },
+                "Lower end of the interval that contains the signed distance, (n,), mesh units.",
+                "Upper end of it, (n,).")
       .view(
           "point", [](const SignedDistance& t) -> const Point3& { return t.nearest.point; },
           "A limit point close to the closest one, (n, 3).")

@@ -447,12 +447,8 @@ Deviation deviation_of(const PySurface& self, const py::object& candidate, const
 void add_deviation(py::module_& module) {
   AnswerClass<OneSidedDistance> one(module, "OneSidedDistance",
                                     "The greatest distance of a point of one set from the other set.");
-  one.view(
-         "lower", [](const OneSidedDistance& t) -> const double& { return t.distance.lower; },
-         "Lower end of its interval, mesh units.")
-      .view(
-          "upper", [](const OneSidedDistance& t) -> const double& { return t.distance.upper; },
-          "Upper end of it.")
+  one.interval([](const OneSidedDistance& t) -> const Interval& { return t.distance; },
+               "Lower end of its interval, mesh units.", "Upper end of it.")
       .view(
           "point", [](const OneSidedDistance& t) -> const Point3& { return t.from.point; },
           "The farthest point found, (3,).")

@@ -251,7 +251,7 @@ TEST(envelope, closes_holes_up_to_a_gap_and_says_how_far_off_it_is_there) {
   EXPECT_FALSE(thin.contains("bridges"));
   EXPECT_LT(thin["volume"][1], 0.03);
   EXPECT_GT(filled["volume"][0], 0.04);
-  EXPECT_EQ(filled["bridges"]["gap"], 0.24);
+  EXPECT_EQ(filled["bridges"]["diameter"], 0.24);
   EXPECT_GT(filled["bridges"]["triangles"], 0);
   EXPECT_GT(filled["bridges"]["distance"], filled["error"]);
   EXPECT_EQ(filled["bridges"]["distance"], filled["envelope"]["gap"]);

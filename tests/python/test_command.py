@@ -95,6 +95,7 @@ def test_all_contacts():
     for one, curve in zip(document["curves"], found.curves):
         assert [one["points"], one["closed"], one["proved"], one["error"]] == [curve.points.tolist(), curve.closed, curve.proved, curve.error]
         assert [each["box"] for each in one["boxes"]] == curve.boxes.tolist()
+        assert [each["one_arc"] for each in one["boxes"]] == curve.one_arc.tolist()
     for i, one in enumerate(document["regions"]):
         region = found.regions[i]
         assert [one["verdict"], one["distance"], one["box"]] == [region.verdict, [region.lower, region.upper], region.box.tolist()]

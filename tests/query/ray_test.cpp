@@ -97,6 +97,16 @@ TEST(trace, says_where_it_cannot_tell) {
   EXPECT_TRUE(touching.hits[0].t.contains(0.5));
 }
 
+// From the lower end of the first hit to the upper one of the last.
+Interval part_of(const RayHits& found) {
+  Interval part{INFINITY, -INFINITY};
+  for (const RayHit& hit : found.hits) {
+    part.lower = std::min(part.lower, hit.t.lower);
+    part.upper = std::max(part.upper, hit.t.upper);
+  }
+  return part;
+}
+
 // Whole numbers, so that rays lie in the facet's plane exactly: the answer is where they are on the facet, not all of it.
 TEST(trace, in_the_plane_of_a_facet_is_the_chord) {
   std::mt19937_64 random(9);
@@ -141,11 +151,7 @@ TEST(trace, in_the_plane_of_a_facet_is_the_chord) {
     } else if (last > first) {
       ++chords;
       ASSERT_FALSE(found.hits.empty()) << trial;
-      double lower = INFINITY, upper = -INFINITY;
-      for (const RayHit& hit : found.hits) {
-        lower = std::min(lower, hit.t.lower);
-        upper = std::max(upper, hit.t.upper);
-      }
+      const auto [lower, upper] = part_of(found);
       EXPECT_LE(lower, first + 1e-12) << trial;
       EXPECT_GE(upper, last - 1e-12) << trial;
       if (nearly == 0) {  // along an edge all depends on the tube's width
@@ -156,16 +162,6 @@ TEST(trace, in_the_plane_of_a_facet_is_the_chord) {
   }
   EXPECT_GT(chords, trials / 4);
   EXPECT_GT(missed, trials / 8);
-}
-
-// What the ray has of the answer, from end to end.
-Interval part_of(const RayHits& found) {
-  Interval part{INFINITY, -INFINITY};
-  for (const RayHit& hit : found.hits) {
-    part.lower = std::min(part.lower, hit.t.lower);
-    part.upper = std::max(part.upper, hit.t.upper);
-  }
-  return part;
 }
 
 // Quads that are no parallelograms, and polygons that are split into such: few splits, and the chord.

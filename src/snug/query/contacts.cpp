@@ -324,8 +324,7 @@ class ContactsSearch {
       upper = std::min(upper, distance.upper);
       // Points farther than the tolerance from the other piece are in no contact.
       for (std::size_t s = 0; s < 2; ++s) {
-        const Box3 common = common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_));
-        if (!common.empty()) box.add(common);
+        box.add(common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_)));
       }
       if (item.distance.upper < near_[nearest].distance.upper) nearest = i;
       arc = std::min(arc, item.arc);

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include <snug/geometry/plane_facets.h>
 #include <snug/geometry/point_triangle.h>
 #include <snug/surface/limit_surface.h>
 
@@ -41,6 +42,6 @@ struct Facet {
 /// Requires:  has_patch(patch), the first one of the face.
 [[nodiscard]] bool is_exact_facet(const LimitSurface& surface, FaceId face, PatchId patch);
 /// Corners of a face that is looked at; comparing each with each edge takes their square.
-inline constexpr std::size_t max_facet_corners = 64;
+inline constexpr std::size_t max_facet_corners = PlaneFacet::max_corners;
 
 }  // namespace snug

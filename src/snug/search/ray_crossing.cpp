@@ -5,7 +5,6 @@
 #include <span>
 
 #include <snug/geometry/rounding.h>
-#include <support/contract.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -299,28 +298,26 @@ bool SeenPiece::seems_to_hold_line(const Extent& along) const {
   return true;
 }
 
-std::optional<Extent> chord_in_plane(const RayFrame& ray, std::span<const Point3> polygon, double error,
+std::optional<Extent> chord_in_plane(const RayFrame& ray, const std::array<Point3, 4>& quad, double error,
                                      double reach) {
   std::array<Vector3, 4> seen;
-  SNUG_EXPECT(polygon.size() >= 3 && polygon.size() <= seen.size());
   double largest = 0;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vector3 from = polygon[k] - ray.origin;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const Vector3 from = quad[k] - ray.origin;
     seen[k] = {dot(ray.across[0], from), dot(ray.across[1], from), dot(ray.along, from)};
     largest = std::max(largest, max_abs(from));
   }
-  const auto count = static_cast<std::ptrdiff_t>(polygon.size());
   const double off = ray_slack * (2 * error + 64 * unit_roundoff * largest + 64 * underflow_error);
-  // How thick the polygon is seen: across some side, or not at all.
+  // How thick the quad is seen: across some side, or not at all.
   const double thin = 64 * off;
   double least = INFINITY;
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    for (std::ptrdiff_t k = i + 1; k < count; ++k) {
-      const Vector3& p = seen[static_cast<std::size_t>(i)];
-      const Vector3 side = seen[static_cast<std::size_t>(k)] - p;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t k = i + 1; k < seen.size(); ++k) {
+      const Vector3& p = seen[i];
+      const Vector3 side = seen[k] - p;
       const double size = std::hypot(side.x, side.y);
       double width = 0;
-      for (std::size_t j = 0; j < polygon.size(); ++j) {
+      for (std::size_t j = 0; j < seen.size(); ++j) {
         const Vector3 from = seen[j] - p;
         width = std::max(width, size > 0 ? std::fabs(cross2({side.x, side.y}, {from.x, from.y})) / size
                                          : std::hypot(from.x, from.y));
@@ -329,7 +326,7 @@ std::optional<Extent> chord_in_plane(const RayFrame& ray, std::span<const Point3
     }
   }
   if (!(least <= thin)) return std::nullopt;
-  const Extent extent = cut_to_square(std::span(seen).first(polygon.size()), {}, ray_slack * (reach + off));
+  const Extent extent = cut_to_square(seen, {}, ray_slack * (reach + off));
   return Extent{extent.lower - off, extent.upper + off};
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <optional>
-#include <span>
 
 #include <snug/geometry/triangle.h>
 #include <snug/search/piece_leaf.h>
@@ -76,9 +75,9 @@ class SeenPiece {
   Vector3 along_u_, along_v_, uu_, uv_, vv_;
 };
 
-/// Holds the part of a ray's line within `reach` of a convex polygon whose corners are off by at most `error` a coordinate, if the line
+/// Holds the part of a ray's line within `reach` of a convex quad whose corners are off by at most `error` a coordinate, if the line
 /// lies in its plane up to roundings; nothing if it does not.
-[[nodiscard]] std::optional<Extent> chord_in_plane(const RayFrame& ray, std::span<const Point3> polygon,
+[[nodiscard]] std::optional<Extent> chord_in_plane(const RayFrame& ray, const std::array<Point3, 4>& quad,
                                                    double error, double reach);
 
 }  // namespace snug
