@@ -130,11 +130,11 @@ void write_summary(Report& report, const Options& options, const Wrapped& wrappe
                             apart, text_at_most(found.gap ? error : outer->gap, true),
                             found.clearance > 0 ? "its limit surface" : "it"));
     if (found.bridges > 0) {
-      report.text(
-          fmt::format("but for {} of them, across what no ball of diameter {:.6g} gets into: at most {}",
-                      found.bridges, *found.gap, text_at_most(found.bridge_distance, true)));
+      report.text(fmt::format(
+          "but for {} of them, across holes that no ball of diameter {:.6g} gets into: at most {}",
+          found.bridges, *found.gap, text_at_most(found.bridge_distance, true)));
     } else if (found.gap) {
-      report.text(fmt::format("no place that a ball of diameter {:.6g} does not get into is farther from it",
+      report.text(fmt::format("a ball of diameter {:.6g} gets near enough everywhere: no hole is filled",
                               *found.gap));
     }
   }
