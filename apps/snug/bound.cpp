@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "answer_writer.h"
 #include "common.h"
 #include "curve.h"
 #include "length.h"
@@ -152,8 +153,7 @@ class ConeCount {
 void write_bound_summary(Report& report, const BoundSummary& summary, const BoundOptions& how,
                          const std::string& found) {
   if (report.json()) {
-    report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
-    report.write().field("outcome", name_of(summary.outcome)).field("splits", summary.splits);
+    write_fields(report.write().end_array(), summary);
   }
   report.text(found + ", largest radius " + text_at_most(summary.max_radius, true));
   if (summary.outcome == Outcome::complete) return;

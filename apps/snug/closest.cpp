@@ -8,11 +8,11 @@
 #include "column_table.h"
 #include "number_rows.h"
 
+#include "answer_writer.h"
 #include "certificate_file.h"
 #include "length.h"
 #include "placed_pair.h"
 #include "progress_bar.h"
-#include "witness.h"
 #include "words.h"
 
 namespace snug::command {
@@ -71,12 +71,8 @@ std::string text_of_bounds(double lower, double upper) {
 }
 
 void write_sign(JsonWriter& json, const SignedDistance& found) {
-  json.key("signed_distance")
-      .begin_array()
-      .value(found.distance.lower)
-      .value(found.distance.upper)
-      .end_array()
-      .key("inside");
+  write_field(json, "signed_distance", found.distance, {});
+  json.key("inside");
   if (found.distance.upper < 0) {
     json.value(true);
   } else if (found.distance.lower > 0) {
@@ -97,16 +93,12 @@ void write_result(Report& report, const Surface& surface, const Result& result) 
         surface.traits().triangular ? "" : fmt::format(" {}", near.at->corner)));
     return;
   }
-  JsonWriter& json = report.write();
-  json.begin_object()
-      .key("distance")
-      .begin_array()
-      .value(near.distance.lower)
-      .value(near.distance.upper)
-      .end_array();
+  JsonWriter& json = report.write().begin_object();
   if (result.with_sign) write_sign(json, *result.with_sign);
-  json.field("outcome", name_of(result.outcome())).field("point", near.point).field("error", near.error);
-  write_place(json, surface, *near.at);
+  ClosestPoint shown = near;
+  shown.outcome = result.outcome();
+  const PlacedSurface placed(surface);
+  write_fields(json, shown, {&placed, 1});
   json.end_object();
 }
 

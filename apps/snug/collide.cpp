@@ -7,6 +7,7 @@
 #include <support/atomic_file.h>
 #include <support/run.h>
 
+#include "answer_writer.h"
 #include "certificate_file.h"
 #include "contact_report.h"
 #include "length.h"
@@ -29,16 +30,6 @@ struct Options : PairOptions {
   std::string precision = "0.1%", curves;
   bool all_pairs = false;
 };
-
-void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer) {
-  json.field("verdict", name_of(answer.verdict)).field("outcome", name_of(answer.outcome));
-  json.key("distance").begin_array().value(answer.distance.lower);
-  answer.distance.upper < INFINITY ? json.value(answer.distance.upper) : json.null();
-  json.end_array();
-  write_witness(json, sides, answer.witness ? &*answer.witness : nullptr);
-  write_inner(json, answer.contained);
-  write_stats(json, answer.stats);
-}
 
 // How to decide more: where the budget was not spent, rounding is in the way.
 const char* advice(const Collision& answer, const CollideOptions& asked) {
@@ -111,7 +102,7 @@ ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report
   const auto ask = [&](const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace) {
     Collision answer = collide(a, b, wanted, run_of(options, quiet, &workspace));
     return PoseAnswer{
-        .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_answer(json, sides, answer); },
+        .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_fields(json, answer, sides); },
         .row = row(answer),
         .reached = answer.verdict != Verdict::undecided};
   };
@@ -152,7 +143,7 @@ void write_to(const Collision& found, const SceneRun& run, const ScenePair& pair
   answer.verdict = found.verdict;
   answer.reached = found.verdict != Verdict::undecided;
   answer.row = row(found);
-  if (json) write_answer(*json, run.sides_of(pair.parts), found);
+  if (json) write_fields(*json, found, run.sides_of(pair.parts));
 }
 
 ExitStatus run_scene(const Options& options) {
@@ -240,9 +231,9 @@ ExitStatus run(const Options& options) {
     write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
     Collision shown = answer;
     if (all) shown.outcome = worse(answer.outcome, all->outcome);
-    write_answer(report.write(), sides, shown);
-    if (depth) write_penetration(report.write(), *depth);
-    if (all) write_contacts(report.write(), sides, *all);
+    write_fields(report.write(), shown, sides);
+    if (depth) write_field(report.write(), "penetration", *depth, sides);
+    if (all) write_fields(report.write(), *all, sides, "outcome");
   }
   report.text(sentence(answer, wanted));
   if (answer.witness) {

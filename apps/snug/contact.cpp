@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "answer_writer.h"
 #include "length.h"
 #include "placed_pair.h"
 #include "pose_file.h"
@@ -189,17 +190,6 @@ ExitStatus status_of(Verdict verdict) {
   return ExitStatus::undecided;
 }
 
-void write_answer(JsonWriter& json, const Sides& sides, const TimeOfContact& answer) {
-  json.field("verdict", name_of(answer.verdict)).field("outcome", name_of(answer.outcome));
-  json.key("time").begin_array().value(answer.time.lower);
-  answer.time.upper < INFINITY ? json.value(answer.time.upper) : json.null();
-  json.end_array();
-  write_witness(json, sides, answer.witness ? &*answer.witness : nullptr);
-  write_inner(json, answer.contained);
-  json.key("steps").value(static_cast<std::uint64_t>(answer.steps));
-  write_stats(json, answer.stats);
-}
-
 ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   PairArguments pair(options);
@@ -233,7 +223,7 @@ ExitStatus run(const Options& options) {
     const double last = end_a.empty() && end_b.empty() ? 0 : 1;
     report.write().field("duration", std::max({motion_a.duration(), motion_b.duration(), last}));
     write_poses(report.write(), at);
-    write_answer(report.write(), sides, answer);
+    write_fields(report.write(), answer, sides);
   }
   report.text(sentence(answer, *wanted.tolerance, options.solid));
   if (answer.witness) {

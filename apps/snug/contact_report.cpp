@@ -11,65 +11,6 @@ namespace {
 // Of those printed for people.
 constexpr std::size_t max_area_lines = 20, max_area_corners = 8;
 
-void write_interval(JsonWriter& json, const char* name, const Interval& interval) {
-  json.key(name).begin_array().value(interval.lower).value(interval.upper).end_array();
-}
-
-void write_box(JsonWriter& json, const Box3& box) {
-  json.key("box").begin_array().value(box.lower).value(box.upper).end_array();
-}
-
-void write_patches(JsonWriter& json, const std::array<PatchPlace, 2>& patches) {
-  json.field("a", patches[0].owner).field("part_a", patches[0].part);
-  json.field("b", patches[1].owner).field("part_b", patches[1].part);
-}
-
-void write_region(JsonWriter& json, const Sides& sides, const ContactRegion& region) {
-  json.begin_object().field("verdict", name_of(region.verdict));
-  write_interval(json, "distance", region.distance);
-  write_box(json, region.box);
-  write_witness(json, sides, &region.witness);
-  for (std::size_t s = 0; s < 2; ++s) {
-    json.key(s == 0 ? "owners_a" : "owners_b").begin_array();
-    for (const std::uint32_t owner : region.owners[s]) json.value(owner);
-    json.end_array();
-  }
-  json.key("contacts").begin_array();
-  for (const PatchContact& contact : region.contacts) {
-    json.begin_object();
-    write_patches(json, contact.patches);
-    json.field("verdict", name_of(contact.verdict));
-    write_interval(json, "distance", contact.distance);
-    json.end_object();
-  }
-  json.end_array().end_object();
-}
-
-void write_curve(JsonWriter& json, const IntersectionCurve& curve) {
-  json.begin_object()
-      .field("region", curve.region)
-      .field("closed", curve.closed)
-      .field("proved", curve.proved);
-  json.field("error", curve.error);
-  json.key("at_border").begin_array().value(curve.at_border[0]).value(curve.at_border[1]).end_array();
-  json.key("points").begin_array();
-  for (const Point3& p : curve.points) json.value(p);
-  json.end_array().key("boxes").begin_array();
-  for (const CurveBox& box : curve.boxes) {
-    json.begin_object();
-    write_box(json, box.box);
-    json.field("one_arc", box.one_arc).end_object();
-  }
-  json.end_array().end_object();
-}
-
-void write_area(JsonWriter& json, const ContactArea& area) {
-  json.begin_object().field("region", area.region).field("a", area.faces[0]).field("b", area.faces[1]);
-  json.field("error", area.error).key("points").begin_array();
-  for (const Point3& p : area.points) json.value(p);
-  json.end_array().end_object();
-}
-
 std::string number_of(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -116,24 +57,6 @@ std::string area_line(const ContactArea& area, std::size_t number) {
 }
 
 }  // namespace
-
-void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found) {
-  json.field("exhaustive", found.exhaustive);
-  json.key("regions").begin_array();
-  for (const ContactRegion& region : found.regions) write_region(json, sides, region);
-  json.end_array().key("curves").begin_array();
-  for (const IntersectionCurve& curve : found.curves) write_curve(json, curve);
-  json.end_array().key("areas").begin_array();
-  for (const ContactArea& area : found.areas) write_area(json, area);
-  json.end_array().key("open").begin_array();
-  for (const OpenBox& open : found.open) {
-    json.begin_object();
-    write_box(json, open.box);
-    write_patches(json, open.patches);
-    json.field("region", open.region).end_object();
-  }
-  json.end_array();
-}
 
 std::vector<std::string> contact_lines(const Sides& sides, const Contacts& found) {
   std::vector<std::string> lines;

@@ -7,10 +7,7 @@
 
 namespace snug::command {
 
-/// The fields of collide --all: exhaustive, regions, curves, open.
-void write_contacts(JsonWriter& json, const Sides& sides, const Contacts& found);
-
-/// The same for people: a line for each region and each curve.
+/// All contacts for people: a line for each region and each curve.
 [[nodiscard]] std::vector<std::string> contact_lines(const Sides& sides, const Contacts& found);
 
 /// Curves as the lines of an OBJ file; a closed one ends where it begins.

@@ -7,10 +7,10 @@
 #include <fmt/core.h>
 #include <support/error.h>
 
+#include "answer_writer.h"
 #include "curve.h"
 #include "length.h"
 #include "progress_bar.h"
-#include "witness.h"
 
 namespace snug::command {
 namespace {
@@ -90,10 +90,6 @@ ExitStatus status_of(Within verdict) {
   return statuses[static_cast<std::size_t>(verdict)];
 }
 
-void write_interval(JsonWriter& json, const char* key, const Interval& interval) {
-  json.key(key).begin_array().value(interval.lower).value(interval.upper).end_array();
-}
-
 // Null where the farthest point lies on no surface.
 void write_place_of(JsonWriter& json, const OneSidedDistance& found, const Surface* on) {
   if (!found.from.at || on == nullptr) {
@@ -112,7 +108,7 @@ void write_points(JsonWriter& json, const OneSidedDistance& found) {
 // Of the points of the candidate on one side of the solid; no points where there are none.
 void write_side(JsonWriter& json, const std::string& side, const OneSidedDistance& found,
                 const Surface* candidate) {
-  write_interval(json, side.c_str(), found.distance);
+  write_field(json, side, found.distance, {});
   const bool none = found.distance.upper == 0;
   json.key(side + "_points");
   if (none) {
@@ -129,8 +125,8 @@ void write_side(JsonWriter& json, const std::string& side, const OneSidedDistanc
 void write_answer(JsonWriter& json, const Deviation& answer, const std::array<const Surface*, 2>& surfaces) {
   const std::array sides{&answer.from_surface, &answer.from_candidate};
   json.field("outcome", snug::name_of(answer.outcome));
-  write_interval(json, "from_surface", sides[0]->distance);
-  write_interval(json, "from_candidate", sides[1]->distance);
+  write_field(json, "from_surface", sides[0]->distance, {});
+  write_field(json, "from_candidate", sides[1]->distance, {});
   json.key("points").begin_array();
   for (const OneSidedDistance* side : sides) write_points(json, *side);
   json.end_array().key("points_error").begin_array();

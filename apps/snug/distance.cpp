@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "answer_writer.h"
 #include "certificate_file.h"
 #include "length.h"
 #include "placed_pair.h"
@@ -21,14 +22,6 @@ struct Options : PairOptions {
   std::string limit;
 };
 
-void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) {
-  json.field("outcome", name_of(answer.outcome));
-  json.key("distance").begin_array().value(answer.distance.lower).value(answer.distance.upper).end_array();
-  write_witness(json, sides, &answer.witness);
-  write_inner(json, answer.contained);
-  write_stats(json, answer.stats);
-}
-
 // Bounds of the distance and witnesses of one pose among many.
 std::string row(const Distance& answer) {
   const Point3 &a = answer.witness[0].point, &b = answer.witness[1].point;
@@ -42,7 +35,7 @@ ExitStatus run_poses(const Options& options, PairArguments& pair, Report& report
   const auto ask = [&](const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace) {
     Distance answer = distance(a, b, wanted, run_of(options, quiet, &workspace));
     return PoseAnswer{
-        .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_answer(json, sides, answer); },
+        .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_fields(json, answer, sides); },
         .row = row(answer),
         .reached = answer.outcome == Outcome::complete};
   };
@@ -90,7 +83,7 @@ ExitStatus run_scene(const Options& options) {
     answer.verdict = found->distance.upper == 0 ? Verdict::intersecting : Verdict::within;
     answer.reached = found->outcome == Outcome::complete;
     answer.row = row(*found);
-    if (json) write_answer(*json, run.sides_of(pair.parts), *found);
+    if (json) write_fields(*json, *found, run.sides_of(pair.parts));
   };
   if (certificate.wanted()) {
     question.prove = [&](Report& report, std::vector<AtomicFile*>& files) {
@@ -128,7 +121,7 @@ ExitStatus run(const Options& options) {
   const Distance answer = distance(pair.a(), pair.b(), wanted, certificate.with(run_of(options, monitor)));
   if (report.json()) {
     write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
-    write_answer(report.write(), sides, answer);
+    write_fields(report.write(), answer, sides);
   }
   if (answer.distance.upper == 0) {
     report.text(answer.contained ? "proved: " + inner_sentence(*answer.contained)

@@ -10,6 +10,7 @@
 #include <support/error.h>
 #include <support/read_file.h>
 
+#include "answer_writer.h"
 #include "hulls_of_mesh.h"
 #include "length.h"
 #include "pose.h"
@@ -82,7 +83,7 @@ void write_fit(Report& report, const Options& options, const Fit& fit) {
     JsonWriter& json = report.write();
     json.key("part").begin_object().field("mesh", options.part).key("inside");
     fit.inside ? json.value(*fit.inside) : json.null();
-    json.key("clearance").begin_array().value(fit.clearance.lower).value(fit.clearance.upper).end_array();
+    write_field(json, "clearance", fit.clearance, {});
     json.end_object();
   }
   const std::string apart =
@@ -110,12 +111,7 @@ void write_summary(Report& report, const Options& options, const Wrapped& wrappe
     if (!options.scene.empty()) json.field("scene", options.scene);
     json.field("error", error).field("clearance", found.clearance).key("envelope");
     write_hull(json, outer);
-    json.key("volume");
-    if (complete && found.volume) {
-      json.begin_array().value(found.volume->lower).value(found.volume->upper).end_array();
-    } else {
-      json.null();
-    }
+    write_field(json, "volume", complete ? found.volume : std::nullopt, {});
     if (found.gap) {
       json.key("bridges").begin_object().field("diameter", *found.gap).field("triangles", found.bridges);
       json.field("distance", found.bridge_distance).end_object();

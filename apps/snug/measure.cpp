@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "answer_writer.h"
 #include "common.h"
 #include "length.h"
 #include "progress_bar.h"
@@ -18,37 +19,6 @@ struct Options : CommonOptions {
 double relative_precision(const std::string& text) {
   const Length share = parse_length(text, "--relative", true);
   return share.percent ? share.number / 100 : share.number;
-}
-
-JsonWriter& operator<<(JsonWriter& json, const Interval& x) {
-  return json.begin_array().value(x.lower).value(x.upper).end_array();
-}
-
-template <std::size_t N>
-void write_intervals(JsonWriter& json, const char* name, const std::optional<std::array<Interval, N>>& all) {
-  json.key(name);
-  if (!all) {
-    json.null();
-    return;
-  }
-  json.begin_array();
-  for (const Interval& x : *all) json << x;
-  json.end_array();
-}
-
-void write_json(JsonWriter& json, const Measures& found, double relative) {
-  json.field("relative", relative).field("outcome", name_of(found.outcome));
-  json.key("area") << found.area;
-  json.field("closed", found.volume.has_value());
-  json.key("volume");
-  if (found.volume) {
-    json << *found.volume;
-  } else {
-    json.null();
-  }
-  write_intervals(json, "centroid", found.centroid);
-  write_intervals(json, "inertia", found.inertia);
-  json.key("stats").begin_object().field("splits", found.splits).end_object();
 }
 
 std::string text_of(const Interval& x) { return fmt::format("{} to {}", x.lower, x.upper); }
@@ -86,7 +56,7 @@ ExitStatus run(const Options& options) {
     naming(options.mesh, [&] { found = measure(surface, wanted, run_of(options, monitor)); });
   }
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  if (report.json()) write_json(report.write(), found, *wanted.relative);
+  if (report.json()) write_fields(report.write().field("relative", *wanted.relative), found);
   write_text(report, found, surface.open_reason());
   if (found.outcome != Outcome::complete) {
     report.text(found.outcome == Outcome::budget_spent

@@ -4,6 +4,7 @@
 
 #include <support/read_file.h>
 
+#include "answer_writer.h"
 #include "progress_bar.h"
 #include "words.h"
 
@@ -63,10 +64,7 @@ void write_place(JsonWriter& json, const Surface& surface, const Place& at, cons
   const SchemeTraits& traits = surface.traits();
   json.field(traits.owner(), at.owner).field("u", at.u).field("v", at.v);
   if (!traits.triangular) json.field("corner", at.corner);
-  json.field("point", point.point).field("error", point.error).key("normal");
-  point.normal ? json.value(*point.normal) : json.null();
-  json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
-  json.field("differentiable", point.differentiable);
+  write_fields(json, point);
 }
 
 Option& add_place_options(OptionList& list, unsigned& samples, std::string& at) {

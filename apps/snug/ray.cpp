@@ -8,12 +8,12 @@
 #include <support/read_file.h>
 #include "number_rows.h"
 
+#include "answer_writer.h"
 #include "certificate_file.h"
 #include "common.h"
 #include "length.h"
 #include "placed_pair.h"
 #include "progress_bar.h"
-#include "witness.h"
 
 namespace snug::command {
 namespace {
@@ -48,21 +48,6 @@ std::vector<Ray> read_rays(const std::string& path) {
   return rays;
 }
 
-void write_hit(JsonWriter& json, const Surface& surface, const RayHit& hit) {
-  json.begin_object()
-      .key("t")
-      .begin_array()
-      .value(hit.t.lower)
-      .value(hit.t.upper)
-      .end_array()
-      .field("certified", hit.certified);
-  json.key("side");
-  hit.side == 0 ? json.null() : json.value(hit.side);
-  json.field("point", hit.point).field("error", hit.error);
-  write_place(json, surface, *hit.at);
-  json.end_object();
-}
-
 std::string line_of(std::size_t ray, const Surface& surface, const RayHit& hit) {
   const std::string corner = surface.traits().triangular ? "" : fmt::format(" {}", hit.at->corner);
   return fmt::format("{}  {} {}  {}  {} {} {}  {} {} {}{}", ray, hit.t.lower, hit.t.upper,
@@ -72,10 +57,8 @@ std::string line_of(std::size_t ray, const Surface& surface, const RayHit& hit) 
 
 void write_answer(Report& report, const Surface& surface, std::size_t ray, const RayHits& answer) {
   if (report.json()) {
-    JsonWriter& json = report.write();
-    json.begin_object().field("outcome", name_of(answer.outcome)).key("hits").begin_array();
-    for (const RayHit& hit : answer.hits) write_hit(json, surface, hit);
-    json.end_array().end_object();
+    const PlacedSurface placed(surface);
+    write_value(report.write(), answer, {&placed, 1});
     return;
   }
   for (const RayHit& hit : answer.hits) report.text(line_of(ray, surface, hit));

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "answer_writer.h"
 #include "common.h"
 #include "length.h"
 #include "mesh_summary.h"
@@ -19,30 +20,6 @@ struct Options : CommonOptions {
   std::string mesh;
   std::string tolerance, radius;
 };
-
-void write_json(JsonWriter& json, const SelfContact& found, std::optional<double> tolerance,
-                const char* owner) {
-  json.field("verdict", name_of(found.verdict)).field("outcome", name_of(found.outcome));
-  if (tolerance) json.field("within", *tolerance).field("radius", found.radius);
-  json.key("pairs").begin_array();
-  for (const SelfContactPair& pair : found.pairs) {
-    json.begin_object().field("verdict", name_of(pair.verdict));
-    json.key("at").begin_array();
-    for (const LimitPoint& point : pair.points) {
-      const Place& at = *point.at;
-      json.begin_object().field(owner, at.owner).field("corner", at.corner);
-      json.field("u", at.u).field("v", at.v).end_object();
-    }
-    json.end_array().key("witness").begin_array();
-    for (const LimitPoint& point : pair.points) json.value(point.point);
-    json.end_array().key("distance").begin_array();
-    json.value(pair.distance.lower).value(pair.distance.upper).end_array();
-    json.field("touching", pair.touching).end_object();
-  }
-  json.end_array().key("stats").begin_object();
-  json.field("stars", found.stars).field("pair_tests", found.pair_tests).field("levels", found.levels);
-  json.end_object();
-}
 
 void write_text(Report& report, const SelfContact& found, std::optional<double> tolerance,
                 const Surface& surface) {
@@ -94,8 +71,10 @@ ExitStatus run(const Options& options) {
     naming(options.mesh, [&] { found = self_contact(surface, wanted, run_of(options, monitor)); });
   }
   report.heads({options.mesh}, {name_of(surface.scheme())});
-  const char* const owner = surface.traits().owner();
-  if (report.json()) write_json(report.write(), found, wanted.within, owner);
+  if (report.json()) {
+    if (wanted.within) report.write().field("within", *wanted.within);
+    write_fields(report.write(), found, std::array<PlacedSurface, 2>{surface, surface});
+  }
   write_text(report, found, wanted.within, surface);
   return report.finish(found.verdict != SelfVerdict::undecided);
 }

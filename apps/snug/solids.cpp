@@ -5,11 +5,6 @@
 
 namespace snug::command {
 
-void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner) {
-  json.key("contained");
-  inner ? json.value(*inner == 0 ? "a" : "b") : json.null();
-}
-
 std::string inner_sentence(std::size_t inner) {
   return inner == 0 ? "A or a part of it lies inside B" : "B or a part of it lies inside A";
 }
@@ -23,12 +18,6 @@ void note_nesting(const CommonOptions& options, const PlacedSurface& a, const Pl
   if (found.contained) {
     notes(inner_sentence(*found.contained).append(", but the surfaces do not meet; --solid compares solids"));
   }
-}
-
-void write_penetration(JsonWriter& json, const Penetration& found) {
-  json.key("penetration").begin_object().key("depth").begin_array();
-  json.value(found.depth.lower).value(found.depth.upper).end_array();
-  json.field("translation", found.translation).field("outcome", name_of(found.outcome)).end_object();
 }
 
 std::string penetration_sentence(const Penetration& found) {

@@ -1,16 +1,13 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <string>
 
 #include <snug/collide.h>
 
 #include "placed_pair.h"
 
 namespace snug::command {
-
-/// "contained": "a" or "b", the part that lies in the other one, or null.
-void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 
 /// "B or a part of it lies inside A".
 [[nodiscard]] std::string inner_sentence(std::size_t inner);
@@ -19,8 +16,6 @@ void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 void note_nesting(const CommonOptions& options, const PlacedSurface& a, const PlacedSurface& b,
                   const WorkMonitor& monitor);
 
-/// "penetration": {depth, translation, outcome}, and as a sentence.
-void write_penetration(JsonWriter& json, const Penetration& found);
 [[nodiscard]] std::string penetration_sentence(const Penetration& found);
 
 }  // namespace snug::command

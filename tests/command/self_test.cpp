@@ -50,8 +50,8 @@ TEST_F(self_command, of_two_boxes_in_each_other_tells_where) {
   ASSERT_FALSE(found["pairs"].empty());
   const json& pair = found["pairs"][0];
   EXPECT_EQ(pair["verdict"], "intersecting");
-  EXPECT_LT(pair["at"][0]["face"], 6);
-  EXPECT_GE(pair["at"][1]["face"], 6);
+  EXPECT_LT(pair["witness_at"][0]["face"], 6);
+  EXPECT_GE(pair["witness_at"][1]["face"], 6);
   EXPECT_EQ(pair["witness"].size(), 2U);
   EXPECT_EQ(pair["distance"][1], 0);
   EXPECT_NE(run(std::string(box) + another).out.find("intersecting"), std::string::npos);

@@ -99,7 +99,7 @@ def test_all_contacts():
     for i, one in enumerate(document["regions"]):
         region = found.regions[i]
         assert [one["verdict"], one["distance"], one["box"]] == [region.verdict, [region.lower, region.upper], region.box.tolist()]
-        assert [one["witness"], one["owners_a"]] == [region.points.tolist(), region.owners[0].tolist()]
+        assert [one["witness"], one["owners"]] == [region.points.tolist(), [owners.tolist() for owners in region.owners]]
 
 
 @pytest.mark.parametrize("scheme", ["catmark", "bilinear", "midedge"])
@@ -115,7 +115,7 @@ def test_self_contact(scheme, tmp_path):
     pairs = document["pairs"]
     assert [p["witness"] for p in pairs] == answer.pairs.points.tolist() and len(pairs) > 0
     assert [p["distance"] for p in pairs] == np.column_stack([answer.pairs.lower, answer.pairs.upper]).tolist()
-    assert [[at.get("face", at.get("vertex")) for at in p["at"]] for p in pairs] == answer.pairs.faces.tolist()
+    assert [[at.get("face", at.get("vertex")) for at in p["witness_at"]] for p in pairs] == answer.pairs.faces.tolist()
     assert [p["touching"] for p in pairs] == answer.pairs.touching.tolist()
 
 
