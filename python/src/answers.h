@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,9 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include <snug/surface.h>
+#include <snug/fields.h>
 
 #include "arrays.h"
+#include "state.h"
 
 namespace snug::python {
 
@@ -76,7 +76,7 @@ class AnswerClass {
       for (std::size_t i = 0; i < count; ++i) taken.push_back(self.all()[begin + i * step]);
       return Self(std::move(taken));
     });
-    if constexpr (std::is_trivially_copyable_v<T>) def_pickle();
+    def_pickle();
     const auto itself = [](const py::object& self, const py::args&) { return self; };  // answers never change
     class_.def("__copy__", itself);
     class_.def("__deepcopy__", itself);
@@ -101,15 +101,6 @@ class AnswerClass {
     return *this;
   }
 
-  /// Both ends of an interval that of(const T&) refers to.
-  template <class Of>
-  AnswerClass& interval(const Of& of, const char* lower_doc, const char* upper_doc) {
-    view(
-        "lower", [of](const T& t) -> const double& { return of(t).lower; }, lower_doc);
-    return view(
-        "upper", [of](const T& t) -> const double& { return of(t).upper; }, upper_doc);
-  }
-
   /// fill(const T&, Number*) writes as many numbers as `shape` has, for each answer.
   template <class Number, class Fill>
   AnswerClass& array(const char* name, std::vector<py::ssize_t> shape, const Fill& fill, const char* doc) {
@@ -123,20 +114,24 @@ class AnswerClass {
     return *this;
   }
 
-  /// The object that of(const T&) returns; for many answers, a list of them.
+  /// The object that of(const T&, py::handle self) returns; for many answers, a list of them.
   template <class Of>
   AnswerClass& list(const char* name, const Of& of, const char* doc) {
     class_.def_property_readonly(
         name,
-        [of](const Self& self) -> py::object {
-          if (self.single()) return of(self.one());
+        [of](const py::object& object) -> py::object {
+          const Self& self = object.cast<const Self&>();
+          if (self.single()) return of(self.one(), object);
           py::list result;
-          for (const T& each : self.all()) result.append(of(each));
+          for (const T& each : self.all()) result.append(of(each, object));
           return result;
         },
         doc);
     return *this;
   }
+
+  /// The fields of T: python/src/fields.h.
+  AnswerClass& fields();
 
   /// <snug.Name text>; <snug.Name of n>, and what summary(span) says of many.
   template <class Text, class Summary>
@@ -157,27 +152,23 @@ class AnswerClass {
   [[nodiscard]] py::class_<Self>& python() { return class_; }
 
  private:
-  // For processes of the same build: the bytes as they are in memory.
   void def_pickle() {
     class_.def(py::pickle(
         [](const Self& self) {
           const std::span<const T> all = self.all();
-          return py::make_tuple(
-              SNUG_VERSION, sizeof(T), self.single(),
-              py::bytes(reinterpret_cast<const char*>(all.data()), all.size_bytes()));  // NOLINT
+          return py::make_tuple(SNUG_VERSION, sizeof(T), self.single(),
+                                State::save(std::vector<T>(all.begin(), all.end())));
         },
         [](const py::tuple& state) {
           if (state.size() != 4 || state[0].cast<std::string>() != SNUG_VERSION ||
               state[1].cast<std::size_t>() != sizeof(T)) {
-            throw py::value_error("pickled by another version of snug");
+            State::refuse();
           }
-          const auto bytes = state[3].cast<std::string>();
-          std::vector<T> many(bytes.size() / sizeof(T));
-          if (!many.empty())
-            std::memcpy(static_cast<void*>(many.data()), bytes.data(), many.size() * sizeof(T));
+          std::vector<T> many;
+          State::restore(state[3], many);
           if (!state[2].cast<bool>()) return Self(std::move(many));
-          if (many.size() != 1) throw py::value_error("pickled by another version of snug");
-          return Self(many[0]);
+          if (many.size() != 1) State::refuse();
+          return Self(std::move(many[0]));
         }));
   }
 
@@ -204,29 +195,5 @@ class AnswerClass {
 [[nodiscard]] std::string text_of(double x, int digits = 4);
 /// Both ends, with as many digits as tell them apart.
 [[nodiscard]] std::string text_of(const Interval& interval);
-
-/// Adds face, corner, u, v of the places that at(const T&) refers to.
-template <class T, class At>
-void add_place(AnswerClass<T>& answers, const At& at) {
-  answers
-      .view(
-          "face", [at](const T& t) -> const std::uint32_t& { return at(t).owner; },
-          "Face of the point, (n,) uint32; in a dual scheme its vertex.")
-      .view(
-          "corner", [at](const T& t) -> const std::uint32_t& { return at(t).corner; },
-          "Corner of the face whose quad has the parameters, (n,) uint32; 0 for triangles and quads.")
-      .view(
-          "u", [at](const T& t) -> const double& { return at(t).u; }, "First parameter, (n,).")
-      .view(
-          "v", [at](const T& t) -> const double& { return at(t).v; }, "Second parameter, (n,).");
-}
-
-/// Adds how the search ended.
-template <class T>
-void add_outcome(AnswerClass<T>& answers) {
-  answers.list(
-      "outcome", [](const T& t) { return py::str(name_of(t.outcome)); },
-      "'complete', 'budget-spent' or 'at-rounding'; of many answers a list. The answer holds in any case.");
-}
 
 }  // namespace snug::python

@@ -7,10 +7,10 @@
 
 #include "answers.h"
 #include "call.h"
+#include "fields.h"
 #include "poses.h"
 #include "state.h"
 #include "surface.h"
-#include "witness.h"
 
 namespace snug {
 
@@ -53,16 +53,6 @@ Contacts contacts_of(const PySurface& py_a, const PySurface& py_b, const py::obj
   return call.run([&](const Run& run) { return contacts(placed_a, placed_b, options, run); });
 }
 
-// (n, 2, 3): lower and upper corners, as boxes() has them.
-template <class T>
-py::array boxes_of(const std::vector<T>& rows, const py::object& owner) {
-  static_assert(sizeof(Box3) == 6 * sizeof(double));
-  static constexpr double none = 0;
-  const double* const data = rows.empty() ? &none : &rows[0].box.lower.x;
-  return read_only<double>({static_cast<py::ssize_t>(rows.size()), 2, 3},
-                           {sizeof(T), 3 * sizeof(double), sizeof(double)}, data, owner);
-}
-
 std::string number_of(std::size_t count, const std::string& one, const std::string& many = "") {
   return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
 }
@@ -79,140 +69,43 @@ bool touches(const Contacts& self) {
   return false;
 }
 
-void add_regions(py::module_& module) {
+void add_all_contacts(py::module_& module) {
   AnswerClass<ContactRegion> regions(module, "ContactRegions", "Connected parts of a contact, n in all.");
-  regions
-      .list(
-          "verdict", [](const ContactRegion& t) { return py::str(name_of(t.verdict)); },
-          "'intersecting': proved. 'within': the points are at most `within` apart. 'undecided': there may "
-          "be no "
-          "contact\n"
-          "here.")
-      .interval([](const ContactRegion& t) -> const Interval& { return t.distance; },
-                "Lower end of an interval that contains the least distance in the region, (n,).",
-                "Upper end of it, (n,).")
-      .array<double>(
-          "box", {2, 3},
-          [](const ContactRegion& t, double* out) {
-            for (const Point3& p : {t.box.lower, t.box.upper}) {
-              for (std::size_t k = 0; k < 3; ++k) *out++ = p[k];
-            }
-          },
-          "Lower and upper corners of a box around all points in contact, (n, 2, 3).")
-      .list(
-          "owners",
-          [](const ContactRegion& t) {
-            py::tuple both(2);
-            for (std::size_t s = 0; s < 2; ++s)
-              both[s] = py::array_t<std::uint32_t>(static_cast<py::ssize_t>(t.owners[s].size()),
-                                                   t.owners[s].data());
-            return both;
-          },
-          "Faces of A and of B (of dual schemes vertices), a pair of uint32 arrays; of n regions a list.");
-  add_witness(regions, "The two closest points found, on A and on B, (n, 2, 3), world coordinates.");
-  regions.repr([](const ContactRegion& t) {
+  regions.fields().repr([](const ContactRegion& t) {
     return std::string(name_of(t.verdict)) + ", distance " + text_of(t.distance);
   });
-}
-
-void add_curve(py::module_& module) {
-  py::class_<IntersectionCurve> cls(
+  py::class_<IntersectionCurve> curve(
       module, "IntersectionCurve",
       "A curve in which two surfaces intersect: points, and boxes between them.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "points",
-         [](const py::object& self) { return column(self.cast<const IntersectionCurve&>().points, self); },
-         "(n, 3); the first point of a closed curve is not repeated.")
-      .def_property_readonly(
-          "boxes",
-          [](const py::object& self) { return boxes_of(self.cast<const IntersectionCurve&>().boxes, self); },
-          "Box i contains the curve between points i and i + 1, of a closed curve the last one leads back, "
-          "(n, 2, "
-          "3).")
-      .def_property_readonly(
-          "one_arc",
-          [](const py::object& self) {
-            return column(
-                std::span<const CurveBox>(self.cast<const IntersectionCurve&>().boxes),
-                [](const CurveBox& box) -> const bool& { return box.one_arc; }, self);
-          },
-          "Is it proved of each box that the surfaces cross in one arc there, from one point to the other? "
-          "(n,) bool.")
-      .def_property_readonly(
-          "closed", [](const IntersectionCurve& self) { return self.closed; }, "Does it end where it begins?")
-      .def_property_readonly(
-          "proved", [](const IntersectionCurve& self) { return self.proved; },
-          "Does each box contain one arc, and do consecutive arcs meet?")
-      .def_property_readonly(
-          "at_border",
-          [](const IntersectionCurve& self) { return py::make_tuple(self.at_border[0], self.at_border[1]); },
-          "Of an open curve: do its first and last point certainly lie on a border?")
-      .def_property_readonly(
-          "error", [](const IntersectionCurve& self) { return self.error; },
-          "Upper bound of the distance between curve and polyline, either way.")
-      .def_property_readonly(
-          "region", [](const IntersectionCurve& self) { return self.region; }, "Which region it is in.")
-      .def("__repr__", [](const IntersectionCurve& self) {
-        return "<snug.IntersectionCurve of " + std::to_string(self.points.size()) + " points" +
-               (self.closed ? ", closed" : "") + (self.proved ? ", proved>" : ">");
-      });
-}
-
-void add_area(py::module_& module) {
-  py::class_<ContactArea> cls(module, "ContactArea",
-                              "What a plane face of A and one of B that touch have in common.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "points",
-         [](const py::object& self) { return column(self.cast<const ContactArea&>().points, self); },
-         "Corners of a convex polygon, ends of a segment, or a point, (n, 3).")
-      .def_property_readonly(
-          "error", [](const ContactArea& self) { return self.error; },
-          "Upper bound, per coordinate, of how far they are from the exact ones.")
-      .def_property_readonly(
-          "faces", [](const ContactArea& self) { return py::make_tuple(self.faces[0], self.faces[1]); },
-          "Of A and of B.")
-      .def_property_readonly(
-          "region", [](const ContactArea& self) { return self.region; }, "Which region it is in.")
-      .def("__repr__", [](const ContactArea& self) {
-        return "<snug.ContactArea of " + std::to_string(self.points.size()) + " points>";
-      });
-}
-
-void add_all_contacts(py::module_& module) {
-  add_regions(module);
-  add_curve(module);
-  add_area(module);
+  add_fields(curve);
+  curve.def_property_readonly(
+      "one_arc",
+      [](const py::object& self) {
+        return column(
+            std::span<const CurveBox>(self.cast<const IntersectionCurve&>().boxes),
+            [](const CurveBox& box) -> const bool& { return box.one_arc; }, self);
+      },
+      "Is it proved of each box that the surfaces cross in one arc there, from one point to the other? "
+      "(n,) bool.");
+  curve.def("__repr__", [](const IntersectionCurve& self) {
+    return "<snug.IntersectionCurve of " + std::to_string(self.points.size()) + " points" +
+           (self.closed ? ", closed" : "") + (self.proved ? ", proved>" : ">");
+  });
+  py::class_<ContactArea> area(module, "ContactArea",
+                               "What a plane face of A and one of B that touch have in common.");
+  add_fields(area);
+  area.def("__repr__", [](const ContactArea& self) {
+    return "<snug.ContactArea of " + std::to_string(self.points.size()) + " points>";
+  });
   py::class_<Contacts> cls(module, "Contacts",
                            "All contacts of two surfaces. bool() is True if one is proved, False if there is "
                            "none, and raises\nUndecidedError else.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "exhaustive", [](const Contacts& self) { return self.exhaustive; },
-         "Do the lists hold all contacts? Not where the budget ended first.")
-      .def_property_readonly(
-          "outcome", [](const Contacts& self) { return name_of(self.outcome); },
-          "'complete', or 'budget-spent' or 'at-rounding' where pieces stayed coarser than requested.")
-      .def_property_readonly(
-          "regions", [](const Contacts& self) { return Answers<ContactRegion>(self.regions); },
-          "ContactRegions.")
-      .def_property_readonly(
-          "curves", [](const Contacts& self) { return list_of(self.curves); }, "A list of IntersectionCurve.")
-      .def_property_readonly(
-          "areas", [](const Contacts& self) { return list_of(self.areas); }, "A list of ContactArea.")
-      .def_property_readonly(
-          "open", [](const py::object& self) { return boxes_of(self.cast<const Contacts&>().open, self); },
-          "Boxes in which the surfaces may meet in an unresolved way, (n, 2, 3).")
-      .def("__bool__", touches)
-      .def("__repr__", [](const Contacts& self) {
-        return "<snug.Contacts: " + number_of(self.regions.size(), "region") + ", " +
-               number_of(self.curves.size(), "curve") + ", " + number_of(self.areas.size(), "area") + ", " +
-               number_of(self.open.size(), "open box", "open boxes") + ">";
-      });
+  add_fields(cls);
+  cls.def("__bool__", touches).def("__repr__", [](const Contacts& self) {
+    return "<snug.Contacts: " + number_of(self.regions.size(), "region") + ", " +
+           number_of(self.curves.size(), "curve") + ", " + number_of(self.areas.size(), "area") + ", " +
+           number_of(self.open.size(), "open box", "open boxes") + ">";
+  });
 }
 
 // One surface and itself.
@@ -239,68 +132,26 @@ bool meets(const SelfContact& self) {
   return self.verdict != SelfVerdict::clear;
 }
 
-void add_pairs(py::module_& module) {
+void add_self_contact(py::module_& module) {
   AnswerClass<SelfContactPair> pairs(
       module, "SelfContactPairs",
       "Two places each of a surface that meet, are near each other, or could not be proved apart.");
-  pairs
-      .list(
-          "verdict", [](const SelfContactPair& t) { return py::str(name_of(t.verdict)); },
-          "'intersecting', 'near' or 'undecided'; of n pairs a list.")
-      .interval([](const SelfContactPair& t) -> const Interval& { return t.distance; },
-                "Lower end of an interval that contains the distance of the two pieces, (n,).",
-                "Upper end of it, (n,); both are 0 where the surface meets itself.")
-      .array<bool>(
-          "touching", {}, [](const SelfContactPair& t, bool* out) { *out = t.touching; },
-          "Of facets: have they no point in common that is inside of both? (n,) bool.");
-  add_witness(pairs, "Points on the two pieces, or on both sides of one that turns over, (n, 2, 3).");
-  pairs.repr([](const SelfContactPair& t) { return std::string(name_of(t.verdict)); });
-}
-
-void add_self_contact(py::module_& module) {
+  pairs.fields().repr([](const SelfContactPair& t) { return std::string(name_of(t.verdict)); });
   py::class_<SelfContact> cls(module, "SelfContact",
                               "Does a surface meet itself? bool() is True for 'intersecting' and 'near', "
                               "False for 'clear', and raises\n"
                               "UndecidedError for 'undecided'.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "verdict", [](const SelfContact& self) { return name_of(self.verdict); },
-         "'clear': proved, no two parameters have one limit point. 'intersecting': proved. 'near': proved, "
-         "two "
-         "points at most\n"
-         "`within` apart are farther apart than the radius along the surface. 'undecided'.")
-      .def_property_readonly(
-          "outcome", [](const SelfContact& self) { return name_of(self.outcome); },
-          "'complete' unless undecided; else 'budget-spent' or 'at-rounding'.")
-      .def_property_readonly(
-          "pairs", [](const SelfContact& self) { return Answers<SelfContactPair>(self.pairs); },
-          "The places that the verdict rests on, at most 100: SelfContactPairs; none if clear.")
-      .def_property_readonly(
-          "radius", [](const SelfContact& self) { return self.radius; },
-          "The radius that was used; 0 without `within`.")
-      .def_property_readonly(
-          "stats",
-          [](const SelfContact& self) {
-            py::dict stats;
-            stats["stars"] = self.stars;
-            stats["pair_tests"] = self.pair_tests;
-            stats["levels"] = self.levels;
-            return stats;
-          },
-          "The work that was done, as a dict.")
-      .def("__bool__", meets)
-      .def("__repr__", [](const SelfContact& self) {
-        return std::string("<snug.SelfContact ") + name_of(self.verdict) +
-               (self.pairs.empty() ? "" : ", " + number_of(self.pairs.size(), "place")) + ">";
-      });
+  add_fields(cls);
+  cls.def("__bool__", meets).def("__repr__", [](const SelfContact& self) {
+    return std::string("<snug.SelfContact ") + name_of(self.verdict) +
+           (self.pairs.empty() ? "" : ", " + number_of(self.pairs.size(), "place")) + ">";
+  });
 }
 
 }  // namespace
 
 void add_contacts(py::class_<PySurface>& surface, py::module_& module) {
   add_all_contacts(module);
-  add_pairs(module);
   add_self_contact(module);
   using py::arg;
   const py::object none = py::none();

@@ -8,9 +8,9 @@
 
 #include "answers.h"
 #include "call.h"
+#include "fields.h"
 #include "poses.h"
 #include "surface.h"
-#include "witness.h"
 
 namespace snug::python {
 namespace {
@@ -95,6 +95,12 @@ void add_trajectory(py::module_& module) {
   cls.attr("__module__") = "snug";
   using py::arg;
   const py::object none = py::none();
+  cls.def(py::init([](const py::args&, const py::kwargs&) -> Trajectory {
+    throw py::type_error(
+        "Trajectory() makes none: give Trajectory.through(poses, *, rigid=None) or "
+        "Trajectory.steady(pose=None, *, "
+        "velocity=(0, 0, 0), axis=(0, 0, 1), radians=0, about=None, rigid=None)");
+  }));
   cls.def_static(
          "through",
          [](const py::object& poses, const py::object& rigid) { return motion_of(poses, "poses", rigid); },
@@ -129,24 +135,7 @@ void add_time_of_contact(py::module_& module) {
       module, "TimeOfContact",
       "The first contact of two moving surfaces. bool() is True for 'within' and 'intersecting', False for\n"
       "'separated', and raises UndecidedError for 'undecided'.");
-  answers
-      .list(
-          "verdict", [](const TimeOfContact& t) { return py::str(name_of(t.verdict)); },
-          "'separated': they never meet. 'within': at `upper` they are at most the tolerance apart. "
-          "'intersecting': they\n"
-          "have a common point at some time from `lower` to `upper`. 'undecided': none of these could be "
-          "shown.")
-      .interval([](const TimeOfContact& t) -> const Interval& { return t.time; },
-                "They have no common point before this time.",
-                "The time at which they are found near each other; infinite if they are not.")
-      .view(
-          "steps", [](const TimeOfContact& t) -> const int& { return t.steps; },
-          "Number of times that were looked at.");
-  add_outcome(answers);
-  add_witness(answers,
-              "The two closest points found at `upper`, on A and on B, (2, 3); NaN if there are none.");
-  add_contained(answers);
-  add_stats(answers);
+  answers.fields();
   answers.python().def("__bool__", meets);
   answers.repr([](const TimeOfContact& t) {
     return std::string(name_of(t.verdict)) +

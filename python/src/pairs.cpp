@@ -9,9 +9,9 @@
 #include "answers.h"
 #include "call.h"
 #include "certificate.h"
+#include "fields.h"
 #include "poses.h"
 #include "surface.h"
-#include "witness.h"
 
 namespace snug::python {
 namespace {
@@ -141,20 +141,6 @@ std::string note_of(Outcome outcome) {
   return outcome == Outcome::complete ? "" : std::string(", ") + name_of(outcome);
 }
 
-// Members that Collision and Distance have in common.
-template <class T>
-void add_common(AnswerClass<T>& answers) {
-  answers.interval(
-      [](const T& t) -> const Interval& { return t.distance; },
-      "Lower end of the interval that contains the distance, (n,), mesh units.",
-      "Upper end of it, (n,), mesh units; infinite if no pair of points was near enough to matter.");
-  add_witness(
-      answers,
-      "The two closest points found, on A and on B, (n, 2, 3), world coordinates; NaN if there are none.");
-  add_contained(answers);
-  add_stats(answers);
-}
-
 bool colliding(const Collision& answer) {
   return answer.verdict == Verdict::within || answer.verdict == Verdict::intersecting;
 }
@@ -206,8 +192,7 @@ void add_collision(py::module_& module) {
       module, "Collision",
       "Do two surfaces touch? One answer, or n of them for n poses. bool() is True for 'within' and\n"
       "'intersecting', False for 'separated', and raises UndecidedError for 'undecided'.");
-  add_common(answers);
-  add_outcome(answers);
+  answers.fields();
   const auto mask = [&](const char* name, const auto& holds, const char* doc) {
     answers.array<bool>(
         name, {}, [holds](const Collision& t, bool* out) { *out = holds(t); }, doc);
@@ -219,9 +204,6 @@ void add_collision(py::module_& module) {
   mask(
       "undecided", [](const Collision& t) { return t.verdict == Verdict::undecided; },
       "Was nothing shown within max_splits or the precision of doubles? (n,) bool.");
-  answers.list(
-      "verdict", [](const Collision& t) { return py::str(name_of(t.verdict)); },
-      "'separated', 'within', 'intersecting' or 'undecided'; of many answers a list.");
   answers.python()
       .def("__bool__", truth)
       .def(
@@ -241,25 +223,15 @@ void add_collision(py::module_& module) {
 void add_distance(py::module_& module) {
   AnswerClass<Distance> answers(module, "Distance",
                                 "How far apart two surfaces are: one answer, or n of them for n poses.");
-  add_common(answers);
-  add_outcome(answers);
-  answers.repr([](const Distance& t) { return text_of(t.distance) + note_of(t.outcome); });
+  answers.fields().repr([](const Distance& t) { return text_of(t.distance) + note_of(t.outcome); });
 }
 
 void add_penetration(py::module_& module) {
   AnswerClass<Penetration> answers(
       module, "Penetration",
       "How deeply two solids penetrate: the least length of a translation of B that separates them.");
-  answers
-      .interval([](const Penetration& t) -> const Interval& { return t.depth; },
-                "No translation shorter than this separates them, (n,), mesh units.",
-                "`translation` is at most this long, (n,), mesh units.")
-      .view(
-          "translation", [](const Penetration& t) -> const Vector3& { return t.translation; },
-          "Added to B's translation it separates them: proved, (n, 3). Zero if they are separated as they "
-          "are.")
-      .repr([](const Penetration& t) { return "depth " + text_of(t.depth) + note_of(t.outcome); });
-  add_outcome(answers);
+  answers.fields().repr(
+      [](const Penetration& t) { return "depth " + text_of(t.depth) + note_of(t.outcome); });
 }
 
 constexpr const char* pose_doc =

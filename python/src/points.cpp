@@ -10,6 +10,7 @@
 #include "answers.h"
 #include "call.h"
 #include "certificate.h"
+#include "fields.h"
 #include "state.h"
 #include "surface.h"
 
@@ -105,38 +106,13 @@ Answers<Side> contained(const PySurface& self, const py::object& points, const p
 void add_closest(py::module_& module) {
   AnswerClass<ClosestPoint> answers(module, "ClosestPoint",
                                     "The closest point of a surface: of one point, or of each of n.");
-  answers
-      .interval([](const ClosestPoint& t) -> const Interval& { return t.distance; },
-                "Lower end of the interval that contains the distance, (n,), mesh units.",
-                "Upper end of it; `point` is at most so far away, (n,).")
-      .view(
-          "point", [](const ClosestPoint& t) -> const Point3& { return t.point; },
-          "A limit point close to the closest one, (n, 3).")
-      .view(
-          "error", [](const ClosestPoint& t) -> const double& { return t.error; },
-          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).");
-  add_outcome(answers);
-  add_place(answers, [](const ClosestPoint& t) -> const Place& { return *t.at; });
-  answers.repr([](const ClosestPoint& t) {
+  answers.fields().repr([](const ClosestPoint& t) {
     return "distance " + text_of(t.distance) + ", face " + std::to_string(t.at->owner);
   });
-
   AnswerClass<SignedDistance> signed_answers(
       module, "SignedDistance",
       "How far one point, or each of n, is from a closed surface: negative inside.");
-  signed_answers
-      .interval([](const SignedDistance& t) -> const Interval& { return t.distance; },
-                "Lower end of the interval that contains the signed distance, (n,), mesh units.",
-                "Upper end of it, (n,).")
-      .view(
-          "point", [](const SignedDistance& t) -> const Point3& { return t.nearest.point; },
-          "A limit point close to the closest one, (n, 3).")
-      .view(
-          "error", [](const SignedDistance& t) -> const double& { return t.nearest.error; },
-          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).");
-  add_outcome(signed_answers);
-  add_place(signed_answers, [](const SignedDistance& t) -> const Place& { return *t.nearest.at; });
-  signed_answers.repr([](const SignedDistance& t) { return text_of(t.distance); });
+  signed_answers.fields().repr([](const SignedDistance& t) { return text_of(t.distance); });
 }
 
 void add_containment(py::module_& module) {
@@ -275,14 +251,6 @@ void add_rays(py::module_& module) {
                        "Hits of all rays follow one another, m in all, in the order of rays and of t.");
   cls.attr("__module__") = "snug";
   add_state(cls);
-  const auto hit_view = [&](const char* name, const auto& member, const char* doc) {
-    cls.def_property_readonly(
-        name,
-        [member](const py::object& self) {
-          return column(std::span<const RayHit>(self.cast<const Hits&>().hits), member, self);
-        },
-        doc);
-  };
   const auto number_view = [&](const char* name, auto Hits::*numbers, const char* doc) {
     cls.def_property_readonly(
         name, [numbers](const py::object& self) { return column(self.cast<const Hits&>().*numbers, self); },
@@ -298,34 +266,22 @@ void add_rays(py::module_& module) {
         },
         doc);
   };
-  hit_view(
-      "lower", [](const RayHit& t) -> const double& { return t.t.lower; },
-      "Lower ends of t, (m,), in lengths of the direction.");
-  hit_view(
-      "upper", [](const RayHit& t) -> const double& { return t.t.upper; }, "Upper ends of t, (m,).");
-  hit_view(
-      "certified", [](const RayHit& t) -> const bool& { return t.certified; },
-      "Is a hit in the interval proved? (m,) bool.");
-  hit_view(
-      "side", [](const RayHit& t) -> const int& { return t.side; },
-      "+1 where the ray passes along the normal, -1 against it, 0 where that is not known, (m,).");
-  hit_view(
-      "point", [](const RayHit& t) -> const Point3& { return t.point; },
-      "In the middle of the intervals, (m, 3).");
-  hit_view(
-      "error", [](const RayHit& t) -> const double& { return t.error; },
-      "Upper bound, per coordinate, of the distance of the ray's points in the interval from `point`, (m,).");
-  hit_view(
-      "face", [](const RayHit& t) -> const std::uint32_t& { return t.at->owner; },
-      "Faces there (of dual schemes vertices), (m,) uint32.");
-  hit_view(
-      "corner", [](const RayHit& t) -> const std::uint32_t& { return t.at->corner; },
-      "Corners of these faces, (m,) uint32.");
-  hit_view(
-      "u", [](const RayHit& t) -> const double& { return t.at->u; }, "First parameter, (m,).");
-  hit_view(
-      "v", [](const RayHit& t) -> const double& { return t.at->v; }, "Second parameter, (m,).");
-  number_view("normal", &Hits::normals, "Unit normals there, (m, 3); NaN where there is none.");
+  for_each_field<RayHit>([&]<class Of>(const Field<Of>& field) {
+    if constexpr (has_columns<RayHit, Of>) {
+      add_columns<RayHit>(field, [&](const char* name, const auto& member, std::string doc) {
+        doc.replace(doc.find("(n"), 2, "(m");
+        cls.def_property_readonly(
+            name,
+            [member](const py::object& self) {
+              return column(std::span<const RayHit>(self.cast<const Hits&>().hits), member, self);
+            },
+            doc.c_str());
+      });
+    } else {
+      number_view(field.name, &Hits::normals,
+                  (std::string(field.text) + " (m, 3); NaN where there is none").c_str());
+    }
+  });
   number_view("ray", &Hits::ray, "The ray of each hit, (m,) int64.");
   cls.def_property_readonly(
       "outcome",
@@ -351,20 +307,13 @@ void add_rays(py::module_& module) {
 
   AnswerClass<QuickHit> quick(module, "QuickHit",
                               "What a ray, or each of n, meets first, for pictures: nothing is proved.");
-  quick
-      .view(
-          "t", [](const QuickHit& t) -> const double& { return t.t; },
-          "In lengths of the direction, (n,); infinite: nothing.")
-      .view(
-          "normal", [](const QuickHit& t) -> const Vector3& { return t.normal; },
-          "Roughly, of length 1 or 0, (n, 3).")
+  quick.fields()
       .array<bool>(
           "hit", {}, [](const QuickHit& t, bool* out) { *out = std::isfinite(t.t); },
           "Was anything met? (n,) bool.")
       .repr([](const QuickHit& t) {
         return std::isfinite(t.t) ? "t " + text_of(t.t) : std::string("nothing");
       });
-  add_place(quick, [](const QuickHit& t) -> const Place& { return t.at; });
 }
 
 // The parameter that plain numbers of Python give, without numpy's help.
@@ -419,32 +368,9 @@ Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, c
 void add_evaluated(py::module_& module) {
   AnswerClass<SurfacePoint> answers(module, "SurfacePoint",
                                     "A limit point, or n of them, with tangents and normals.");
-  answers
-      .view(
-          "point", [](const SurfacePoint& t) -> const Point3& { return t.point; },
-          "The point, (n, 3), mesh units.")
-      .view(
-          "error", [](const SurfacePoint& t) -> const double& { return t.error; },
-          "Upper bound, per coordinate, of its distance from the exact one, (n,).")
-      .view(
-          "tangents", [](const SurfacePoint& t) -> const std::array<Vector3, 2>& { return t.tangents; },
-          "Derivatives in u and v where they exist, else two limit tangents, (n, 2, 3).")
-      .view(
-          "differentiable", [](const SurfacePoint& t) -> const bool& { return t.differentiable; },
-          "Do they exist? (n,) bool.")
-      .array<double>(
-          "normal", {3},
-          [](const SurfacePoint& t, double* out) {
-            for (std::size_t k = 0; k < 3; ++k) out[k] = t.normal ? (*t.normal)[k] : nan;
-          },
-          "Unit normal, (n, 3); NaN where there is none.")
-      .array<double>(
-          "normal_error", {},
-          [](const SurfacePoint& t, double* out) { *out = t.normal_error.value_or(HUGE_VAL); },
-          "Upper bound of |normal - exact normal|, (n,); infinite where none is proved.")
-      .repr([](const SurfacePoint& t) {
-        return text_of(t.point.x) + " " + text_of(t.point.y) + " " + text_of(t.point.z);
-      });
+  answers.fields().repr([](const SurfacePoint& t) {
+    return text_of(t.point.x) + " " + text_of(t.point.y) + " " + text_of(t.point.z);
+  });
 }
 
 }  // namespace

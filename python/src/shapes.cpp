@@ -11,7 +11,7 @@
 
 #include "answers.h"
 #include "call.h"
-#include "state.h"
+#include "fields.h"
 #include "surface.h"
 
 namespace snug {
@@ -155,22 +155,16 @@ void add_enclosures(py::module_& module) {
 
 // Triangles.
 
-template <class Class>
-void add_triangles(Class& cls) {
-  using T = typename Class::type;
-  cls.attr("__module__") = "snug";
-  add_state(cls);
+// Under the names of other libraries, too.
+template <class T>
+void add_triangles(py::class_<T>& cls) {
+  add_fields(cls);
   cls.def_property_readonly(
          "vertices", [](const py::object& self) { return column(self.cast<const T&>().positions, self); },
-         "Corners, (n, 3) float64, mesh units.")
+         "The same as `positions`: corners, (n, 3) float64, mesh units.")
       .def_property_readonly(
           "faces", [](const py::object& self) { return column(self.cast<const T&>().triangles, self); },
-          "Triangles, (m, 3) uint32.");
-  if constexpr (requires(const T& mesh) { mesh.owners; }) {
-    cls.def_property_readonly(
-        "owners", [](const py::object& self) { return column(self.cast<const T&>().owners, self); },
-        "Of each triangle the face of the surface (of dual schemes the vertex), (m,) uint32.");
-  }
+          "The same as `triangles`, (m, 3) uint32.");
 }
 
 Tessellation tessellated(const PySurface& self, const py::object& error, const py::object& max_edge,
@@ -202,32 +196,20 @@ Tessellation tessellated(const PySurface& self, const py::object& error, const p
   return call.run([&](const Run& run) { return tessellate(surface, options, run); });
 }
 
+const Place& itself(const Place& at) { return at; }
+
 void add_tessellation(py::module_& module) {
   py::class_<Tessellation> cls(module, "Tessellation", "Triangles near a surface, without cracks.");
   add_triangles(cls);
-  cls.def_property_readonly(
-      "normals",
-      [](const py::object& self) { return column(self.cast<const Tessellation&>().normals, self); },
-      "Limit normals at the vertices, of length 1, 0 0 0 where there is none, (n, 3); empty with "
-      "normals=False.");
-  const auto parameter = [&](const char* name, const auto& member, const char* doc) {
+  add_columns<Place>(Field{"parameters", &itself, ""}, [&](const char* name, const auto& member,
+                                                           const std::string& doc) {
     cls.def_property_readonly(
         name,
         [member](const py::object& self) {
           return column(std::span<const Place>(self.cast<const Tessellation&>().parameters), member, self);
         },
-        doc);
-  };
-  parameter(
-      "face", [](const Place& t) -> const std::uint32_t& { return t.owner; },
-      "Of each vertex: a face that it lies on, (n,) uint32.");
-  parameter(
-      "corner", [](const Place& t) -> const std::uint32_t& { return t.corner; },
-      "Corner of that face, (n,) uint32.");
-  parameter(
-      "u", [](const Place& t) -> const double& { return t.u; }, "First parameter there, (n,).");
-  parameter(
-      "v", [](const Place& t) -> const double& { return t.v; }, "Second parameter there, (n,).");
+        doc.c_str());
+  });
   cls.def_property_readonly(
          "corner_parameters",
          [](const py::object& object) {
@@ -247,15 +229,6 @@ void add_tessellation(py::module_& module) {
                 [](const std::array<Place, 3>& t) -> const std::uint32_t& { return t[0].corner; }, object);
           },
           "The `corner` that these belong to, (m,) uint32; empty without corners=True.")
-      .def_property_readonly(
-          "error_bound", [](const Tessellation& self) { return self.error_bound; },
-          "Proved: neither the surface nor the triangles have a point farther than this from the other.")
-      .def_property_readonly(
-          "position_error", [](const Tessellation& self) { return self.position_error; },
-          "Upper bound, per coordinate, of |vertex - limit point|.")
-      .def_property_readonly(
-          "outcome", [](const Tessellation& self) { return name_of(self.outcome); },
-          "'complete', or 'budget-spent' where max_splits or max_triangles ended refinement.")
       .def("__repr__", [](const Tessellation& self) {
         return "<snug.Tessellation of " + std::to_string(self.triangles.size()) +
                " triangles, error at most " + text_of(self.error_bound) + ">";
@@ -290,86 +263,28 @@ Envelope envelope_of(const PySurface& self, const py::object& error, const py::o
   return call.run([&](const Run& run) { return envelope(surface, options, run); });
 }
 
-// None, or the hull within its hulls, whose memory it keeps.
-py::object hull_in(const py::object& object, std::optional<Hull> Hulls::*which) {
-  const Hulls& self = object.cast<const Hulls&>();
-  if (!(self.*which)) return py::none();
-  return py::cast(&*(self.*which), py::return_value_policy::reference_internal, object);
-}
-
-py::list problems_in(const std::vector<HullProblem>& problems) {
-  py::list list;
-  for (const HullProblem& problem : problems) {
-    py::dict each;
-    each["fault"] = name_of(problem.fault);
-    each["inner"] = problem.inner;
-    each["place"] = py::make_tuple(problem.place.x, problem.place.y, problem.place.z);
-    each["face"] = problem.owner ? py::object(py::int_(*problem.owner)) : py::object(py::none());
-    list.append(each);
-  }
-  return list;
-}
-
 void add_envelope(py::module_& module) {
   py::class_<Envelope> cls(module, "Envelope", "A closed mesh around a surface.");
   add_triangles(cls);
-  cls.def_property_readonly(
-         "error", [](const Envelope& self) { return self.error; },
-         "No point of it is farther than this from the surface.")
-      .def_property_readonly(
-          "clearance", [](const Envelope& self) { return self.clearance; }, "And none is nearer than this.")
-      .def_property_readonly(
-          "bridges",
-          [](const py::object& self) { return column(self.cast<const Envelope&>().bridges, self); },
-          "With a gap: rows of `faces` that are across what it fills, where `error` does not hold, (k,) "
-          "uint32.")
-      .def_property_readonly(
-          "bridge_distance", [](const Envelope& self) { return self.bridge_distance; },
-          "No point of these is farther than this from the surface.")
-      .def_property_readonly(
-          "volume", [](const Envelope& self) { return py::make_tuple(self.volume.lower, self.volume.upper); },
-          "That of the solid that it bounds, as an interval.")
-      .def_property_readonly(
-          "outcome", [](const Envelope& self) { return name_of(self.outcome); },
-          "'complete': all guarantees hold; else 'budget-spent' or 'at-rounding'.")
-      .def_property_readonly(
-          "problems", [](const Envelope& self) { return problems_in(self.problems); },
-          "Unless 'complete', some of the failures, as those of Hulls.")
-      .def("__repr__", [](const Envelope& self) {
-        return "<snug.Envelope of " + std::to_string(self.triangles.size()) + " triangles, from " +
-               text_of(self.clearance) + " to " + text_of(self.error) + ">";
-      });
+  cls.def("__repr__", [](const Envelope& self) {
+    return "<snug.Envelope of " + std::to_string(self.triangles.size()) + " triangles, from " +
+           text_of(self.clearance) + " to " + text_of(self.error) + ">";
+  });
 }
 
 void add_hulls(py::module_& module) {
   py::class_<Hull> hull(module, "Hull", "Triangles on one side of a surface.");
   add_triangles(hull);
-  hull.def_property_readonly(
-      "gap", [](const Hull& self) { return self.gap; },
-      "Neither the hull nor the surface has a point farther than this from the other.");
   hull.def("__repr__", [](const Hull& self) {
     return "<snug.Hull of " + std::to_string(self.triangles.size()) + " triangles, gap " + text_of(self.gap) +
            ">";
   });
   py::class_<Hulls> cls(module, "Hulls", "The inner and the outer hull of a surface: inner, outer = hulls.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "inner", [](const py::object& self) { return hull_in(self, &Hulls::inner); }, "Hull, or None.")
-      .def_property_readonly(
-          "outer", [](const py::object& self) { return hull_in(self, &Hulls::outer); }, "Hull, or None.")
-      .def("__iter__",
-           [](const py::object& self) {
-             return py::iter(py::make_tuple(hull_in(self, &Hulls::inner), hull_in(self, &Hulls::outer)));
-           })
-      .def_property_readonly(
-          "outcome", [](const Hulls& self) { return name_of(self.outcome); },
-          "'complete': all guarantees hold; else 'budget-spent' or 'at-rounding'.")
-      .def_property_readonly(
-          "closed", [](const Hulls& self) { return self.closed; }, "Does the surface bound a solid?")
-      .def_property_readonly(
-          "problems", [](const Hulls& self) { return problems_in(self.problems); },
-          "Unless complete, some of the places: dicts with fault, inner, place and face.")
+  add_fields(cls);
+  cls.def("__iter__",
+          [](const py::object& self) {
+            return py::iter(py::make_tuple(self.attr("inner"), self.attr("outer")));
+          })
       .def("__repr__",
            [](const Hulls& self) { return std::string("<snug.Hulls ") + name_of(self.outcome) + ">"; });
 }
@@ -385,40 +300,13 @@ Measures measured(const PySurface& self, const py::object& relative, const py::o
   return call.run([&](const Run& run) { return measure(surface, options, run); });
 }
 
-template <std::size_t N>
-py::object intervals(const std::optional<std::array<Interval, N>>& given, const py::object& owner) {
-  if (!given) return py::none();
-  return value_view(*given, owner);
-}
-
 void add_measures(py::module_& module) {
   py::class_<Measures> cls(module, "Measures", "Intervals (lower, upper) that contain the exact values.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "area", [](const Measures& self) { return pair_of(self.area); }, "Area: (lower, upper).")
-      .def_property_readonly(
-          "volume",
-          [](const Measures& self) -> py::object {
-            if (!self.volume) return py::none();
-            return pair_of(*self.volume);
-          },
-          "Volume: (lower, upper); None unless the surface is closed.")
-      .def_property_readonly(
-          "centroid",
-          [](const py::object& self) { return intervals(self.cast<const Measures&>().centroid, self); },
-          "x, y, z, (3, 2); None where the volume may be 0.")
-      .def_property_readonly(
-          "inertia",
-          [](const py::object& self) { return intervals(self.cast<const Measures&>().inertia, self); },
-          "xx, yy, zz, xy, yz, zx of the tensor about the centroid with density 1, (6, 2); None likewise.")
-      .def_property_readonly(
-          "outcome", [](const Measures& self) { return name_of(self.outcome); },
-          "'complete': all are as narrow as requested; else 'budget-spent' or 'at-rounding'.")
-      .def("__repr__", [](const Measures& self) {
-        return "<snug.Measures area " + text_of(self.area) +
-               (self.volume ? ", volume " + text_of(*self.volume) : "") + ">";
-      });
+  add_fields(cls);
+  cls.def("__repr__", [](const Measures& self) {
+    return "<snug.Measures area " + text_of(self.area) +
+           (self.volume ? ", volume " + text_of(*self.volume) : "") + ">";
+  });
 }
 
 // Deviations.
@@ -447,54 +335,14 @@ Deviation deviation_of(const PySurface& self, const py::object& candidate, const
 void add_deviation(py::module_& module) {
   AnswerClass<OneSidedDistance> one(module, "OneSidedDistance",
                                     "The greatest distance of a point of one set from the other set.");
-  one.interval([](const OneSidedDistance& t) -> const Interval& { return t.distance; },
-               "Lower end of its interval, mesh units.", "Upper end of it.")
-      .view(
-          "point", [](const OneSidedDistance& t) -> const Point3& { return t.from.point; },
-          "The farthest point found, (3,).")
-      .view(
-          "nearest", [](const OneSidedDistance& t) -> const Point3& { return t.to; },
-          "A point of the other set near it, (3,).")
-      .view(
-          "error", [](const OneSidedDistance& t) -> const double& { return t.from.error; },
-          "Upper bound, per coordinate, of the distance of `point` from a point of its set.")
-      .array<std::int64_t>(
-          "face", {},
-          [](const OneSidedDistance& t, std::int64_t* out) {
-            *out = t.from.at ? std::int64_t{t.from.at->owner} : -1;
-          },
-          "Face of `point` if its set is a surface, else -1.")
-      .repr([](const OneSidedDistance& t) { return text_of(t.distance); });
+  one.fields().repr([](const OneSidedDistance& t) { return text_of(t.distance); });
   py::class_<Deviation> cls(module, "Deviation",
                             "How far a surface and a candidate that is to stand for it deviate.");
-  cls.attr("__module__") = "snug";
-  add_state(cls);
-  cls.def_property_readonly(
-         "from_surface", [](const Deviation& self) { return Answers<OneSidedDistance>(self.from_surface); },
-         "Of points of the surface from the candidate.")
-      .def_property_readonly(
-          "from_candidate",
-          [](const Deviation& self) { return Answers<OneSidedDistance>(self.from_candidate); },
-          "Of points of the candidate from the surface.");
-  const auto side = [&](const char* name, std::optional<OneSidedDistance> Deviation::*which,
-                        const char* doc) {
-    cls.def_property_readonly(
-        name,
-        [which](const Deviation& self) -> py::object {
-          if (!(self.*which)) return py::none();
-          return py::cast(Answers<OneSidedDistance>(*(self.*which)));
-        },
-        doc);
-  };
-  side("inside", &Deviation::inside, "With solid=True: how far the candidate lies inside; else None.");
-  side("outside", &Deviation::outside, "With solid=True: how far the candidate lies outside; else None.");
-  cls.def_property_readonly(
-         "outcome", [](const Deviation& self) { return name_of(self.outcome); },
-         "'complete': each interval is as narrow as requested or, with a threshold, each question answered.")
-      .def("__repr__", [](const Deviation& self) {
-        return "<snug.Deviation from surface " + text_of(self.from_surface.distance) + ", from candidate " +
-               text_of(self.from_candidate.distance) + ">";
-      });
+  add_fields(cls);
+  cls.def("__repr__", [](const Deviation& self) {
+    return "<snug.Deviation from surface " + text_of(self.from_surface.distance) + ", from candidate " +
+           text_of(self.from_candidate.distance) + ">";
+  });
 }
 
 PyMesh refined(const PySurface& self, const py::object& level, bool limit, const py::object& progress) {

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include <snug/evaluate.h>
+#include <snug/inspect.h>
 #include <snug/mesh.h>
 
 #include "answers.h"
 #include "call.h"
+#include "fields.h"
 
 namespace snug::python {
 
@@ -314,6 +316,27 @@ void write(const ControlMesh& mesh, const py::object& file) {
   warn(notes);
 }
 
+// What is in a mesh, which may be broken.
+py::dict inspected(const py::object& vertices, const py::object& faces, const py::object& scheme) {
+  const ControlMesh mesh = mesh_of(vertices, faces, true);
+  const bool natural = scheme.is_none() || is_word(scheme, "auto");
+  const Scheme taken = natural ? natural_scheme(mesh) : named(scheme, schemes, "scheme");
+  Call call;
+  const auto [counts, found, together] = call.run(
+      [&](const Run&) { return std::tuple(count_elements(mesh, taken), defects(mesh), coincidences(mesh)); });
+  py::dict result = dict_of(counts, {});
+  result["scheme"] = name_of(taken);
+  py::list legal_too;
+  for (const Defect& defect : found) {
+    py::dict each = dict_of(defect, {});
+    each["legal"] = scheme_answers(taken, defect.kind);
+    legal_too.append(each);
+  }
+  result["defects"] = legal_too;
+  result["coincidences"] = dict_of(together, {});
+  return result;
+}
+
 // Views of a mesh, which keep their surface's memory when update() takes another.
 
 py::capsule keeping(const Surface& surface) {
@@ -547,6 +570,25 @@ void add_surface(py::module_& module) {
              "Notes of the reader, and\n"
              "that triangles of another file are smoothed, become MeshWarnings.\n\n"
              "Raises FileError (.filename, .line), MeshError, ValueError.");
+  module.def("inspect", &inspected, arg("vertices"), arg("faces") = none, py::kw_only(),
+             arg("scheme") = "auto",
+             "What is in a mesh, broken ones too, and what is wrong with it, as a dict: counts of its "
+             "elements, `defects` (dicts "
+             "with kind,\n"
+             "text, and legal: does the scheme answer all the same?), and `coincidences`, what stands "
+             "together and is not joined.\n\n"
+             "vertices, faces, scheme: as Surface takes them. Raises ValueError, TypeError for arrays that "
+             "are no mesh.");
+  surface.def(
+      "topology_of",
+      [](const PySurface& self, std::uint32_t face, std::uint32_t part) {
+        return value_of(topology_of(self.surface(), {face, part}), {});
+      },
+      arg("face"), arg("part") = 0,
+      "Number of a patch's topology: patches with the same number share their bounds. None if it is a "
+      "polynomial. Numbers may "
+      "differ\n"
+      "from run to run. Raises ValueError for a patch that is not there.");
   add_point_queries(surface, module);
   add_shapes(surface, module);
   add_contacts(surface, module);

@@ -1,5 +1,7 @@
 """Queries: their forms of input, their answers, their guarantees."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -199,3 +201,33 @@ def test_evaluate(cube):
     for wrong in ((6, 0.5, 0.5), (2**32 - 1, 0, 0), (2**70, 0, 0), (0, 0, 10**400), (0, 0, 0, 9), (0, 0, 0, -1), (0, 2, 0), (0, np.nan, 0), (-1, 0, 0), (0.5, 0, 0), ([[0]], 0, 0), ([0, 1], [0, 0, 0], 0)):
         with pytest.raises((ValueError, TypeError, OverflowError)):
             cube.evaluate(*wrong)
+
+
+def test_names_of_other_doors(bracket, pin):
+    for hits in (snug.collide(bracket, pin, pose_b=moved(0, 0, 0.5)), snug.distance(bracket, pin, pose_b=[moved(3), moved(9)])):
+        np.testing.assert_array_equal(hits.distance, np.stack([hits.lower, hits.upper], axis=-1))
+        np.testing.assert_array_equal(hits.witness, hits.points)
+    regions = snug.contacts(bracket, pin, pose_b=moved(0, 0, 0.5)).regions
+    again = pickle.loads(pickle.dumps(regions))
+    assert len(again) == len(regions) > 0 and again.verdict == regions.verdict and again.contacts == regions.contacts
+    np.testing.assert_array_equal(again.distance, regions.distance)
+    assert again[0].owners[0].tolist() == regions[0].owners[0].tolist()
+
+
+def test_inspection():
+    whole = snug.inspect(CUBE, CUBE_FACES)
+    assert [whole[name] for name in ("scheme", "edges", "components", "boundary_edges", "closed", "defects")] == ["catmark", 12, 1, 0, True, []]
+    assert whole["coincidences"]["vertices"] == 0
+    broken = snug.inspect(CUBE, [*CUBE_FACES, CUBE_FACES[0]], scheme="loop")
+    assert {each["kind"] for each in broken["defects"]} >= {"duplicate-face"} and not all(each["legal"] for each in broken["defects"])
+    assert not snug.inspect(CUBE, CUBE_FACES[1:])["closed"]
+    surface = snug.Surface(CUBE, CUBE_FACES)
+    assert surface.topology_of(0) == surface.topology_of(0, 0)
+    with pytest.raises(ValueError):
+        surface.topology_of(99)
+
+
+def test_trajectories_say_how_they_are_made():
+    for wrong in ((), (1,)):
+        with pytest.raises(TypeError, match=r"through\(poses.*steady\(pose"):
+            snug.Trajectory(*wrong)
