@@ -34,7 +34,7 @@ def names_of_doors():
     classes = re.findall(r"^class SNUG_API (\w+)", headers, re.MULTILINE)
     commands = [path.stem for path in (ROOT / "docs/command").glob("*.md")]
     exported = re.search(r"__all__ = \[(.*?)\]", text_of("python/snug/__init__.py"), re.DOTALL).group(1)
-    surface = re.search(r"^class _Tagged:.*?^class _Witness", text_of("python/snug/_snug.pyi"), re.MULTILINE | re.DOTALL).group(0)
+    surface = re.search(r"^class _Tagged:.*?^class _Truth", text_of("python/snug/_snug.pyi"), re.MULTILINE | re.DOTALL).group(0)
     methods = re.findall(r"(?<!@property\n)    def ([a-z]\w*)\(", surface)
     python = re.findall(r'"([A-Za-z]\w*)"', exported) + [f"Surface.{name}" for name in methods]
     types = text_of("web/package/snug.d.ts")

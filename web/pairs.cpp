@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "fields.h"
 #include "part.h"
 
 namespace snug::web {
@@ -48,47 +49,6 @@ val make_pose(const val& parts) {
   });
 }
 
-// Answers.
-
-val places_of(const std::array<const PlacedSurface*, 2>& sides, const WitnessPoints& points) {
-  val list = val::array();
-  for (std::size_t s = 0; s < 2; ++s) {
-    if (!points[s].at) {
-      list.set(s, val::null());
-      continue;
-    }
-    const Place& at = *points[s].at;
-    val place = object_of(at);
-    const std::optional<SurfaceNormal> normal = normal_at(*sides[s], at);
-    place.set("normal", normal ? array_of(normal->direction) : val::null());
-    place.set("normalError", normal && normal->error ? val(*normal->error) : val::null());
-    list.set(s, place);
-  }
-  return list;
-}
-
-// The fields of witnesses; null where there are none.
-void add_witness(val& result, const std::array<const PlacedSurface*, 2>& sides, const WitnessPoints* points) {
-  val list = val::array();
-  for (std::size_t s = 0; points != nullptr && s < 2; ++s) list.set(s, array_of((*points)[s].point));
-  result.set("witness", points ? list : val::null());
-  result.set("witnessError", points ? val(std::max((*points)[0].error, (*points)[1].error)) : val::null());
-  result.set("witnessAt", points ? places_of(sides, *points) : val::null());
-}
-
-void add_stats(val& result, const SearchStats& stats) {
-  val list = val::object();
-  list.set("boxTests", static_cast<double>(stats.box_tests));
-  list.set("triangleTests", static_cast<double>(stats.triangle_tests));
-  list.set("evaluations", static_cast<double>(stats.evaluations));
-  list.set("splits", static_cast<double>(stats.splits));
-  result.set("stats", list);
-}
-
-val contained_of(const std::optional<std::size_t>& side) {
-  return side ? val(static_cast<unsigned>(*side)) : val::null();
-}
-
 // Where a proof is wanted: receives it, and sets it in a result.
 class Proof {
  public:
@@ -119,13 +79,7 @@ val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
     how.prove_contact = option<bool>(options, "proveContact").value_or(false);
     Proof proof(options);
     const Collision answer = collide(a, b, how, proof.with(run_of(options)));
-    val result = val::object();
-    result.set("verdict", std::string(name_of(answer.verdict)));
-    result.set("outcome", std::string(name_of(answer.outcome)));
-    result.set("distance", array_of(answer.distance));
-    add_witness(result, {&a, &b}, answer.witness ? &*answer.witness : nullptr);
-    result.set("contained", contained_of(answer.contained));
-    add_stats(result, answer.stats);
+    val result = object_of(answer, std::array{a, b});
     proof.add_to(result);
     return result;
   });
@@ -141,14 +95,22 @@ val distance_of_parts(const Part& part_a, const Part& part_b, const val& options
     how.solid = option<bool>(options, "solid").value_or(false);
     Proof proof(options);
     const Distance answer = distance(a, b, how, proof.with(run_of(options)));
-    val result = val::object();
-    result.set("outcome", std::string(name_of(answer.outcome)));
-    result.set("distance", array_of(answer.distance));
-    add_witness(result, {&a, &b}, &answer.witness);
-    result.set("contained", contained_of(answer.contained));
-    add_stats(result, answer.stats);
+    val result = object_of(answer, std::array{a, b});
     proof.add_to(result);
     return result;
+  });
+}
+
+// All contacts, and the curves in which the surfaces intersect.
+val contacts_of_parts(const Part& part_a, const Part& part_b, const val& options) {
+  return guarded([&] {
+    const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
+    const PlacedSurface b(part_b.surface(), motion_of(options["poseB"]));
+    ContactsOptions how;
+    how.within = option<double>(options, "within");
+    how.error = option<double>(options, "error");
+    how.curves = option<bool>(options, "curves").value_or(true);
+    return object_of(contacts(a, b, how, run_of(options)), std::array{a, b});
   });
 }
 
@@ -156,14 +118,8 @@ val penetration_of_parts(const Part& part_a, const Part& part_b, const val& opti
   return guarded([&] {
     PenetrationOptions how;
     how.relative = option<double>(options, "relative").value_or(how.relative);
-    const Penetration answer =
-        penetration({part_a.surface(), motion_of(options["poseA"])},
-                    {part_b.surface(), motion_of(options["poseB"])}, how, run_of(options));
-    val result = val::object();
-    result.set("depth", array_of(answer.depth));
-    result.set("translation", array_of(answer.translation));
-    result.set("outcome", std::string(name_of(answer.outcome)));
-    return result;
+    return object_of(penetration({part_a.surface(), motion_of(options["poseA"])},
+                                 {part_b.surface(), motion_of(options["poseB"])}, how, run_of(options)));
   });
 }
 
@@ -190,15 +146,7 @@ val time_of_contact_of_parts(const Part& part_a, const Part& part_b, const val& 
     const double time = std::isfinite(answer.time.upper) ? answer.time.upper : 0;
     const auto pose = [&](const Trajectory& motion) { return motion.at(std::min(time, motion.duration())); };
     const PlacedSurface a(part_a.surface(), pose(motion_a)), b(part_b.surface(), pose(motion_b));
-    val result = val::object();
-    result.set("verdict", word(name_of(answer.verdict)));
-    result.set("outcome", word(name_of(answer.outcome)));
-    result.set("time", array_of(answer.time));
-    add_witness(result, {&a, &b}, answer.witness ? &*answer.witness : nullptr);
-    result.set("contained", contained_of(answer.contained));
-    result.set("steps", answer.steps);
-    add_stats(result, answer.stats);
-    return result;
+    return object_of(answer, std::array{a, b});
   });
 }
 
@@ -209,20 +157,7 @@ val self_contact_of(const Part& part, const val& options) {
     how.radius = option<double>(options, "radius");
     const SelfContact answer = self_contact(part.surface(), how, run_of(options));
     const PlacedSurface surface(part.surface());
-    val result = val::object();
-    result.set("verdict", word(name_of(answer.verdict)));
-    result.set("outcome", word(name_of(answer.outcome)));
-    val pairs = val::array();
-    for (const SelfContactPair& each : answer.pairs) {
-      val pair = val::object();
-      pair.set("verdict", word(name_of(each.verdict)));
-      pair.set("touching", each.touching);
-      pair.set("distance", array_of(each.distance));
-      add_witness(pair, {&surface, &surface}, &each.points);
-      pairs.call<void>("push", pair);
-    }
-    result.set("pairs", pairs);
-    return result;
+    return object_of(answer, std::array{surface, surface});
   });
 }
 
@@ -234,6 +169,7 @@ EMSCRIPTEN_BINDINGS(pairs) {
   emscripten::function("pose", &make_pose);
   emscripten::function("collide", &collide_parts);
   emscripten::function("distance", &distance_of_parts);
+  emscripten::function("contacts", &contacts_of_parts);
   emscripten::function("penetration", &penetration_of_parts);
   emscripten::function("timeOfContact", &time_of_contact_of_parts);
   emscripten::function("selfContact", &self_contact_of);

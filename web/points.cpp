@@ -1,5 +1,6 @@
 // Questions about points, rays and places.
 
+#include "fields.h"
 #include "part.h"
 
 namespace snug::web {
@@ -11,23 +12,10 @@ val closest_to(const Part& part, const val& point, const val& options) {
     Precision how;
     how.absolute = option<double>(options, "absolute");
     how.relative = option<double>(options, "relative");
-    const auto write = [](const ClosestPoint& answer) {
-      val result = val::object();
-      result.set("distance", array_of(answer.distance));
-      result.set("outcome", std::string(name_of(answer.outcome)));
-      result.set("point", array_of(answer.point));
-      result.set("error", answer.error);
-      result.set("at", object_of(*answer.at));
-      return result;
-    };
-    if (!option<bool>(options, "signed").value_or(false)) {
-      return write(closest_point(part.surface(), {to.x, to.y, to.z}, how, run_of(options)));
+    if (option<bool>(options, "signed").value_or(false)) {
+      return object_of(signed_distance(part.surface(), {to.x, to.y, to.z}, how, run_of(options)));
     }
-    const SignedDistance answer = signed_distance(part.surface(), {to.x, to.y, to.z}, how, run_of(options));
-    val result = write(answer.nearest);
-    result.set("distance", array_of(answer.distance));
-    result.set("outcome", std::string(name_of(answer.outcome)));
-    return result;
+    return object_of(closest_point(part.surface(), {to.x, to.y, to.z}, how, run_of(options)));
   });
 }
 
@@ -52,25 +40,7 @@ val hits_of(const Part& part, const val& origin, const val& direction, const val
     line.from = option<double>(options, "from").value_or(line.from);
     line.to = option<double>(options, "to").value_or(line.to);
     RayOptions how{.query = query_of(options), .absolute = option<double>(options, "absolute")};
-    const RayHits answer = ray(part.surface(), line, how, run_of(options));
-    val result = val::object();
-    val hits = val::array();
-    for (const RayHit& each : answer.hits) {
-      val hit = val::object();
-      hit.set("t", array_of(each.t));
-      hit.set("certified", each.certified);
-      hit.set("side", each.side);
-      hit.set("point", array_of(each.point));
-      hit.set("error", each.error);
-      hit.set("normal", each.normal ? array_of(*each.normal) : val::null());
-      hit.set("at", each.at ? object_of(*each.at) : val::null());
-      hits.call<void>("push", hit);
-    }
-    result.set("hits", hits);
-    result.set("outcome", word(name_of(answer.outcome)));
-    result.set("certainHit", answer.certain_hit());
-    result.set("certainMiss", answer.certain_miss());
-    return result;
+    return object_of(ray(part.surface(), line, how, run_of(options)));
   });
 }
 
@@ -79,17 +49,7 @@ val point_at(const Part& part, const val& at) {
     const auto number = [&](const char* name) { return option<double>(at, name).value_or(0); };
     const Place place{static_cast<std::uint32_t>(number("owner")),
                       static_cast<std::uint32_t>(number("corner")), number("u"), number("v")};
-    const SurfacePoint answer = evaluate(part.surface(), place);
-    val result = val::object();
-    result.set("point", array_of(answer.point));
-    result.set("error", answer.error);
-    val tangents = val::array();
-    for (int t = 0; t < 2; ++t) tangents.set(t, array_of(answer.tangents[static_cast<std::size_t>(t)]));
-    result.set("tangents", tangents);
-    result.set("differentiable", answer.differentiable);
-    result.set("normal", answer.normal ? array_of(*answer.normal) : val::null());
-    result.set("normalError", answer.normal_error ? val(*answer.normal_error) : val::null());
-    return result;
+    return object_of(evaluate(part.surface(), place));
   });
 }
 

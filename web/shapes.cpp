@@ -6,6 +6,7 @@
 
 #include <picture/polyhedron.h>
 
+#include "fields.h"
 #include "part.h"
 
 namespace snug::web {
@@ -13,18 +14,25 @@ namespace {
 
 bool has_triangles(Scheme scheme) { return scheme == Scheme::loop || scheme == Scheme::flat; }
 
-val cage_of(const Part& part) {
+val cage_of(const ControlMesh& mesh) {
+  std::vector<std::uint32_t> corners;
+  for (const VertexId v : mesh.face_vertices) corners.push_back(v.value());
+  val result = val::object();
+  result.set("points", copied(flat_points(mesh.points)));
+  result.set("offsets", copied(mesh.face_offsets));
+  result.set("corners", copied(corners));
+  return result;
+}
+
+val cage_of_part(const Part& part) {
+  return guarded([&] { return cage_of(part.surface().mesh()); });
+}
+
+val subdivided_of(const Part& part, unsigned level, bool limit) {
   return guarded([&] {
-    const ControlMesh& mesh = part.surface().mesh();
-    std::vector<double> points;
-    for (const Point3& p : mesh.points) points.insert(points.end(), {p.x, p.y, p.z});
-    std::vector<std::uint32_t> corners;
-    for (const VertexId v : mesh.face_vertices) corners.push_back(v.value());
-    val result = val::object();
-    result.set("points", copied(points));
-    result.set("offsets", copied(mesh.face_offsets));
-    result.set("corners", copied(corners));
-    return result;
+    const Surface& surface = part.surface();
+    return cage_of(subdivided(surface.mesh(), level, limit,
+                              {.scheme = surface.scheme(), .boundary = surface.boundary()}, {.threads = 1}));
   });
 }
 
@@ -89,15 +97,7 @@ val tessellated(const Part& part, const val& options) {
     if (const auto most = option<double>(options, "maxTriangles")) {
       how.max_triangles = static_cast<std::uint64_t>(*most);
     }
-    const Tessellation made = tessellate(part.surface(), how, run_of(options, 4'000'000));
-    val result = val::object();
-    result.set("positions", copied(flat_points(made.positions)));
-    result.set("normals", copied(flat_points(made.normals)));
-    result.set("triangles", copied(flat(made.triangles)));
-    result.set("owners", copied(made.owners));
-    result.set("errorBound", made.error_bound);
-    result.set("outcome", std::string(name_of(made.outcome)));
-    return result;
+    return object_of(tessellate(part.surface(), how, run_of(options, 4'000'000)));
   });
 }
 
@@ -129,10 +129,7 @@ val enclosures(const Part& part, const val& options) {
           }
         },
         run_of(options));
-    val result = val::object();
-    result.set("count", static_cast<double>(summary.count));
-    result.set("maxRadius", summary.max_radius);
-    result.set("outcome", std::string(name_of(summary.outcome)));
+    val result = object_of(summary);
     result.set("owners", copied(owners));
     result.set("parts", copied(parts));
     result.set("levels", copied(levels));
@@ -187,43 +184,13 @@ val enclosure_shapes(const Part& part, const val& options) {
   });
 }
 
-val problems_in(const std::vector<HullProblem>& found) {
-  val problems = val::array();
-  for (const HullProblem& each : found) {
-    val problem = val::object();
-    problem.set("fault", word(name_of(each.fault)));
-    problem.set("inner", each.inner);
-    problem.set("place", array_of(each.place));
-    problem.set("owner", each.owner ? val(*each.owner) : val::null());
-    problems.call<void>("push", problem);
-  }
-  return problems;
-}
-
-val one_hull(const std::optional<Hull>& hull) {
-  if (!hull) return val::null();
-  val result = val::object();
-  result.set("positions", copied(flat_points(hull->positions)));
-  result.set("triangles", copied(flat(hull->triangles)));
-  result.set("owners", copied(hull->owners));
-  result.set("gap", hull->gap);
-  return result;
-}
-
 val hulls_of(const Part& part, const val& options) {
   return guarded([&] {
     HullOptions how;
     how.error = option<double>(options, "error");
     how.inner = option<bool>(options, "inner").value_or(true);
     how.outer = option<bool>(options, "outer").value_or(true);
-    const Hulls made = hull(part.surface(), how, run_of(options));
-    val result = val::object();
-    result.set("inner", one_hull(made.inner));
-    result.set("outer", one_hull(made.outer));
-    result.set("outcome", std::string(name_of(made.outcome)));
-    result.set("closed", made.closed);
-    result.set("problems", problems_in(made.problems));
-    return result;
+    return object_of(hull(part.surface(), how, run_of(options)));
   });
 }
 
@@ -233,27 +200,8 @@ val enveloped(const Part& part, const val& options) {
     EnvelopeOptions how;
     how.error = option<double>(options, "error");
     how.clearance = option<double>(options, "clearance");
-    const Envelope made = envelope(part.surface(), how, run_of(options));
-    val result = val::object();
-    result.set("positions", copied(flat_points(made.positions)));
-    result.set("triangles", copied(flat(made.triangles)));
-    result.set("error", made.error);
-    result.set("clearance", made.clearance);
-    result.set("volume", array_of(made.volume));
-    result.set("outcome", word(name_of(made.outcome)));
-    result.set("problems", problems_in(made.problems));
-    return result;
+    return object_of(envelope(part.surface(), how, run_of(options)));
   });
-}
-
-val one_sided(const OneSidedDistance& answer) {
-  val result = val::object();
-  result.set("distance", array_of(answer.distance));
-  result.set("point", array_of(answer.from.point));
-  result.set("error", answer.from.error);
-  result.set("at", answer.from.at ? object_of(*answer.from.at) : val::null());
-  result.set("nearest", array_of(answer.to));
-  return result;
 }
 
 // Of a surface and {positions, triangles}.
@@ -262,6 +210,7 @@ val deviation_of(const Part& part, const val& candidate, const val& options) {
     DeviationOptions how;
     how.absolute = option<double>(options, "absolute");
     how.threshold = option<double>(options, "threshold");
+    how.solid = option<bool>(options, "solid").value_or(false);
     const std::vector<double> numbers =
         emscripten::convertJSArrayToNumberVector<double>(candidate["positions"]);
     const auto corners = emscripten::convertJSArrayToNumberVector<double>(candidate["triangles"]);
@@ -276,12 +225,7 @@ val deviation_of(const Part& part, const val& candidate, const val& options) {
     std::vector<Triangle> triangles;
     for (std::size_t i = 0; i + 2 < points.size(); i += 3)
       triangles.push_back({points[i], points[i + 1], points[i + 2]});
-    const Deviation answer = deviation(part.surface(), triangles, how, run_of(options));
-    val result = val::object();
-    result.set("fromSurface", one_sided(answer.from_surface));
-    result.set("fromCandidate", one_sided(answer.from_candidate));
-    result.set("outcome", word(name_of(answer.outcome)));
-    return result;
+    return object_of(deviation(part.surface(), triangles, how, run_of(options)));
   });
 }
 
@@ -296,12 +240,7 @@ val measured(const Part& part, const val& options) {
   return guarded([&] {
     MeasureOptions how;
     how.relative = option<double>(options, "relative");
-    const Measures measures = measure(part.surface(), how, run_of(options));
-    val result = val::object();
-    result.set("area", array_of(measures.area));
-    result.set("volume", measures.volume ? array_of(*measures.volume) : val::null());
-    result.set("outcome", std::string(name_of(measures.outcome)));
-    return result;
+    return object_of(measure(part.surface(), how, run_of(options)));
   });
 }
 
@@ -310,7 +249,8 @@ val measured(const Part& part, const val& options) {
 
 EMSCRIPTEN_BINDINGS(shapes) {
   using namespace snug::web;  // NOLINT
-  emscripten::function("cage", &cage_of);
+  emscripten::function("cage", &cage_of_part);
+  emscripten::function("subdivided", &subdivided_of);
   emscripten::function("sampled", &sampled);
   emscripten::function("tessellate", &tessellated);
   emscripten::function("enclosures", &enclosures);

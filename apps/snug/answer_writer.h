@@ -41,7 +41,7 @@ void write_value(JsonWriter& json, const V& value, On on) {
 }
 inline void write_value(JsonWriter& json, const Interval& interval, On) {
   json.begin_array().value(interval.lower);
-  std::isfinite(interval.upper) ? json.value(interval.upper) : json.null();
+  interval.upper == INFINITY ? json.null() : json.value(interval.upper);
   json.end_array();
 }
 inline void write_value(JsonWriter& json, const Box3& box, On) {

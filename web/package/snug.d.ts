@@ -42,12 +42,6 @@ export interface WitnessPlace extends Place {
   normalError: number | null;
 }
 
-export interface SearchStats {
-  boxTests: number;
-  triangleTests: number;
-  evaluations: number;
-  splits: number;
-}
 
 /** Poses default to where the files put the parts; lengths are in mesh units. */
 export interface PairOptions {
@@ -76,48 +70,10 @@ export interface DistanceOptions extends PairOptions {
   relative?: number;
 }
 
-export interface Collision {
-  verdict: Verdict;
-  outcome: Outcome;
-  /** The upper end is Infinity if no pair of points was near enough to matter. */
-  distance: Interval;
-  /** The two closest points found, on A and on B. */
-  witness: [Point, Point] | null;
-  /** Upper bound, per coordinate, of how far a witness is from the limit point it stands for. */
-  witnessError: number | null;
-  witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
-  /** With solid: 0 if A has a surface point inside B, 1 the other way round. */
-  contained: 0 | 1 | null;
-  stats: SearchStats;
-  certificate?: Certificate;
-}
 /** A proof that the program snug-check verifies, empty if there is none, and what it does not prove. */
 export interface Certificate {
   text: string;
   missing: string;
-}
-export interface Distance {
-  distance: Interval;
-  outcome: Outcome;
-  witness: [Point, Point];
-  witnessError: number;
-  witnessAt: [WitnessPlace | null, WitnessPlace | null];
-  contained: 0 | 1 | null;
-  stats: SearchStats;
-  certificate?: Certificate;
-}
-export interface Penetration {
-  depth: Interval;
-  /** To be added to B's pose: proved to separate the solids. */
-  translation: Point;
-  outcome: Outcome;
-}
-export interface ClosestPoint {
-  distance: Interval;
-  outcome: Outcome;
-  point: Point;
-  error: number;
-  at: Place;
 }
 
 /** The control mesh: face f has the corners from offsets[f] to offsets[f + 1]. */
@@ -154,16 +110,6 @@ export interface Samples {
   /** Upper bound of the error of all coordinates. */
   error: number;
 }
-export interface Tessellation {
-  positions: Float64Array;
-  normals: Float64Array;
-  triangles: Uint32Array;
-  /** Of each triangle the face; in a dual scheme, the vertex. */
-  owners: Uint32Array;
-  /** Proved, both ways. */
-  errorBound: number;
-  outcome: Outcome;
-}
 export interface BoundOptions {
   /** Split until each radius is at most half of this. */
   error?: number;
@@ -193,98 +139,232 @@ export interface EnclosureShapes {
   positions: Float32Array;
   edges: Float32Array;
 }
-export interface Hull {
-  positions: Float64Array;
-  triangles: Uint32Array;
-  owners: Uint32Array;
-  gap: number;
-}
-export interface Hulls {
-  inner: Hull | null;
-  outer: Hull | null;
-  /** "complete": they are proved not to meet the surface, each other and themselves. */
-  outcome: Outcome;
-  closed: boolean;
-  problems: { fault: string; inner: boolean; place: Point; owner: number | null }[];
-}
-
-/** A closed mesh around the surface. */
-export interface Envelope {
-  positions: Float64Array;
-  triangles: Uint32Array;
-  error: number;
-  clearance: number;
-  volume: Interval;
-  /** "complete": proved closed, and between clearance and error from the surface. */
-  outcome: Outcome;
-  problems: Hulls["problems"];
-}
-export interface RayHit {
-  /** Contains a hit, if certified, else maybe; in lengths of the direction. */
-  t: Interval;
-  certified: boolean;
-  /** 1 where the ray leaves on the side of the normal, -1 on the other, 0 where that is not known. */
-  side: -1 | 0 | 1;
-  point: Point;
-  error: number;
-  normal: Point | null;
-  at: Place | null;
-}
-export interface RayHits {
-  hits: RayHit[];
-  outcome: Outcome;
-  /** Is it proved that there is a hit, or that there is none? */
-  certainHit: boolean;
-  certainMiss: boolean;
-}
-export interface SurfacePoint {
-  point: Point;
-  error: number;
-  tangents: [Point, Point];
-  differentiable: boolean;
-  normal: Point | null;
-  normalError: number | null;
-}
 export type SelfVerdict = "clear" | "intersecting" | "near" | "undecided";
-export interface SelfContact {
-  verdict: SelfVerdict;
-  outcome: Outcome;
-  /** The places that the verdict rests on, at most 100. */
-  pairs: {
-    verdict: SelfVerdict;
-    /** Of facets: no point in common is inside of both. */
-    touching: boolean;
-    distance: Interval;
-    witness: [Point, Point];
-    witnessError: number;
-    witnessAt: [WitnessPlace, WitnessPlace];
-  }[];
+export type HullFault =
+  | "no-position" | "meets-surface" | "meets-itself" | "meets-other" | "not-around" | "too-few-triangles" | "through-itself";
+/** Which triangle of a face (in a dual scheme, of a vertex). */
+export interface PatchPlace {
+  owner: number;
+  part: number;
+}
+/** With `certificate` among the options. */
+export interface Collision {
+  certificate?: Certificate;
+}
+export interface Distance {
+  certificate?: Certificate;
+}
+// Answers, as include/snug/fields.h has them; tests/doors/declarations_test.cpp writes them.
+export interface SearchStats {
+  /** Pairs of BVH nodes compared. */ boxTests: number;
+  /** Pairs of base triangles compared. */ triangleTests: number;
+  /** Pairs of limit points evaluated. */ evaluations: number;
+  /** Pieces split. */ splits: number;
+}
+export interface Collision {
+  /** 'separated': farther apart than the margin. 'within': at most margin + tolerance apart. 'intersecting': with a point in common. All are proved. 'undecided': none of these was. */ verdict: Verdict;
+  /** 'complete', or why the verdict is 'undecided': 'budget-spent' or 'at-rounding'. */ outcome: Outcome;
+  /** Contains the distance, in mesh units; the upper end is infinite if no pair of points was near enough to matter. */ distance: Interval;
+  /** The two closest points found, on A and on B. */ witness: [Point, Point] | null;
+  /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number | null;
+  /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
+  /** With solid: whose surface has a point inside the other, if no crossing was proved. */ contained: 0 | 1 | null;
+  /** The work that was done. */ stats: SearchStats;
+}
+export interface Distance {
+  /** 'complete', 'budget-spent' or 'at-rounding'; the answer holds in any case. */ outcome: Outcome;
+  /** Contains the distance, in mesh units; [0, 0] if contact is proved. */ distance: Interval;
+  /** The two closest points found, on A and on B. */ witness: [Point, Point];
+  /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number;
+  /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null];
+  /** With solid: whose surface has a point inside the other, if no crossing was proved. */ contained: 0 | 1 | null;
+  /** The work that was done. */ stats: SearchStats;
+}
+export interface Penetration {
+  /** Contains the depth, in mesh units: no translation shorter than the lower end separates the solids. */ depth: Interval;
+  /** Added to B's pose it separates them: proved. Zero if they are separated as they are. */ translation: Point;
+  /** 'complete', 'budget-spent' or 'at-rounding'; the answer holds in any case. */ outcome: Outcome;
 }
 export interface TimeOfContact {
-  verdict: Verdict;
-  outcome: Outcome;
-  /** No common point before its lower end; the upper one is Infinity if none was found. */
-  time: Interval;
-  witness: [Point, Point] | null;
-  witnessError: number | null;
-  witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
-  contained: 0 | 1 | null;
-  steps: number;
-  stats: SearchStats;
+  /** 'separated': they never meet. 'within': at the upper end of `time` they are at most the tolerance apart. 'intersecting': they have a common point at some time in `time`. 'undecided': none of these was shown. */ verdict: Verdict;
+  /** 'complete', 'budget-spent' or 'at-rounding'; the answer holds in any case. */ outcome: Outcome;
+  /** No common point before the lower end; at the upper end they are found near each other, infinite if they are not. */ time: Interval;
+  /** The two closest points found at the upper end of `time`, on A and on B. */ witness: [Point, Point] | null;
+  /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number | null;
+  /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
+  /** With solid: whose surface has a point inside the other, if no crossing was proved. */ contained: 0 | 1 | null;
+  /** Number of times that were looked at. */ steps: number;
+  /** The work that was done. */ stats: SearchStats;
+}
+export interface PatchContact {
+  /** Of A and of B. */ patches: [PatchPlace, PatchPlace];
+  /** That of these patches. */ verdict: Verdict;
+  /** Contains their distance in the region. */ distance: Interval;
+}
+export interface ContactRegion {
+  /** 'intersecting': proved. 'within': the witnesses are at most `within` apart. 'undecided': there may be no contact here. */ verdict: Verdict;
+  /** Contains the least distance in the region. */ distance: Interval;
+  /** Lower and upper corner of a box around all points in contact. */ box: [Point, Point];
+  /** The two closest points found, on A and on B. */ witness: [Point, Point];
+  /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number;
+  /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null];
+  /** Faces of A and of B (of dual schemes vertices). */ owners: [Uint32Array, Uint32Array];
+  /** Pairs of patches in contact. */ contacts: PatchContact[];
+}
+export interface CurveBox {
+  /** Contains the curve between two points. */ box: [Point, Point];
+  /** Is it proved that one arc leads from one to the other? */ oneArc: boolean;
+}
+export interface IntersectionCurve {
+  /** Which region it is in. */ region: number;
+  /** Does it end where it begins? */ closed: boolean;
+  /** Does each box contain one arc, and do consecutive arcs meet? */ proved: boolean;
+  /** Upper bound of the distance between curve and polyline, either way. */ error: number;
+  /** Of an open curve: do its first and last point certainly lie on a border? */ atBorder: [boolean, boolean];
+  /** The first point of a closed curve is not repeated. */ points: Float64Array;
+  /** Box i contains the curve between points i and i + 1; of a closed curve the last one leads back. */ boxes: CurveBox[];
+}
+export interface ContactArea {
+  /** Which region it is in. */ region: number;
+  /** Of A and of B. */ faces: [number, number];
+  /** Upper bound, per coordinate, of how far points are from the exact ones. */ error: number;
+  /** Corners of a convex polygon, ends of a segment, or a point. */ points: Float64Array;
+}
+export interface OpenBox {
+  /** Lower and upper corner. */ box: [Point, Point];
+  /** Of A and of B. */ patches: [PatchPlace, PatchPlace];
+  /** Which region it is in. */ region: number;
+}
+export interface Contacts {
+  /** 'complete', or 'budget-spent' or 'at-rounding' where pieces stayed coarser than requested. */ outcome: Outcome;
+  /** Do the lists hold all contacts? Not where the budget ended first. */ exhaustive: boolean;
+  /** Connected parts of the contact. */ regions: ContactRegion[];
+  /** Curves in which the surfaces intersect. */ curves: IntersectionCurve[];
+  /** What plane faces that touch have in common. */ areas: ContactArea[];
+  /** Boxes in which the surfaces may meet in an unresolved way. */ open: OpenBox[];
+}
+export interface SelfContactStats {
+  /** Neighbourhoods of vertices tested. */ stars: number;
+  /** Pairs of pieces tested. */ pairTests: number;
+  /** Levels of subdivision that were needed. */ levels: number;
+}
+export interface SelfContactPair {
+  /** 'intersecting', 'near' or 'undecided'. */ verdict: SelfVerdict;
+  /** Points on the two pieces, or on both sides of one that turns over. */ witness: [Point, Point];
+  /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number;
+  /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null];
+  /** Contains the distance of the two pieces; [0, 0] where the surface meets itself. */ distance: Interval;
+  /** Of facets: have they no point in common that is inside of both? */ touching: boolean;
+}
+export interface SelfContact {
+  /** 'clear': proved, no two parameters have one limit point. 'intersecting': proved. 'near': proved, two points at most `within` apart are farther apart than the radius along the surface. 'undecided'. */ verdict: SelfVerdict;
+  /** 'complete', or why the verdict is 'undecided': 'budget-spent' or 'at-rounding'. */ outcome: Outcome;
+  /** The radius that was used; 0 without `within`. */ radius: number;
+  /** The places that the verdict rests on, at most 100; none if clear. */ pairs: SelfContactPair[];
+  /** The work that was done. */ stats: SelfContactStats;
+}
+export interface ClosestPoint {
+  /** Contains the distance, in mesh units; `point` is at most as far away as its upper end. */ distance: Interval;
+  /** 'complete', 'budget-spent' or 'at-rounding'; the answer holds in any case. */ outcome: Outcome;
+  /** A limit point close to the closest one. */ point: Point;
+  /** Upper bound, per coordinate, of the distance of `point` from the limit point that it stands for. */ error: number;
+  /** Where it lies. */ at: Place;
+}
+export interface RayHit {
+  /** Contains a hit if `certified`, else maybe; in lengths of the direction. */ t: Interval;
+  /** Is a hit in the interval proved? */ certified: boolean;
+  /** 1 where the ray leaves on the side of the normal, -1 on the other, 0 where that is not known. */ side: -1 | 0 | 1;
+  /** In the middle of the interval. */ point: Point;
+  /** Upper bound, per coordinate, of the distance of the ray's points in the interval from `point`. */ error: number;
+  /** Close to the parameters of the hit. */ at: Place;
+  /** Unit normal there, if there is one. */ normal: Point | null;
+}
+export interface RayHits {
+  /** 'budget-spent': there may be other hits. 'at-rounding': an interval stays wider than requested. */ outcome: Outcome;
+  /** By the lower ends of their intervals, in which all hits lie. */ hits: RayHit[];
+  /** Is it proved that there is a hit? */ certainHit: boolean;
+  /** Is it proved that there is none? */ certainMiss: boolean;
+}
+export interface SurfacePoint {
+  /** The limit point. */ point: Point;
+  /** Upper bound, per coordinate, of its distance from the exact one. */ error: number;
+  /** Derivatives in u and v where they exist, else two limit tangents. */ tangents: [Point, Point];
+  /** Are `tangents` derivatives? */ differentiable: boolean;
+  /** Unit normal, if there is one. */ normal: Point | null;
+  /** Upper bound of |normal - exact normal|, where one is proved. */ normalError: number | null;
+}
+export interface BoundSummary {
+  /** Number of enclosures. */ count: number;
+  /** The largest radius. */ maxRadius: number;
+  /** 'complete', 'budget-spent', or 'at-rounding' where 60 levels or rounding ended splitting. */ outcome: Outcome;
+  /** Splits in all. */ splits: number;
+}
+export interface Tessellation {
+  /** Corners of triangles. */ positions: Float64Array;
+  /** Unit limit normals at `positions`, 0 0 0 where there is none. */ normals: Float64Array;
+  /** Rows of `positions`, oriented as the faces. */ triangles: Uint32Array;
+  /** Of each triangle the face of the surface (of dual schemes the vertex). */ owners: Uint32Array;
+  /** Proved: triangles and surface are nowhere farther apart, either way. */ errorBound: number;
+  /** Upper bound, per coordinate, of |position - limit point|. */ positionError: number;
+  /** 'complete', or 'budget-spent' where max_splits or max_triangles ended refinement. */ outcome: Outcome;
+}
+export interface Hull {
+  /** Corners of triangles. */ positions: Float64Array;
+  /** Rows of `positions`. */ triangles: Uint32Array;
+  /** Of each triangle the face of the surface (of dual schemes the vertex). */ owners: Uint32Array;
+  /** Neither the hull nor the surface has a point farther than this from the other. */ gap: number;
+}
+export interface HullProblem {
+  /** What failed. */ fault: HullFault;
+  /** Is it the inner hull's? */ inner: boolean;
+  /** A point there. */ place: Point;
+  /** The face there (of dual schemes the vertex). */ owner: number | null;
+}
+export interface Hulls {
+  /** Does the surface bound a solid? */ closed: boolean;
+  /** Behind the surface, inside the solid. */ inner: Hull | null;
+  /** In front of the surface, around the solid. */ outer: Hull | null;
+  /** 'complete': all guarantees hold; else 'budget-spent' or 'at-rounding'. */ outcome: Outcome;
+  /** Unless 'complete', some of the failures. */ problems: HullProblem[];
+}
+export interface Envelope {
+  /** Corners of triangles. */ positions: Float64Array;
+  /** Rows of `positions`, oriented outward. */ triangles: Uint32Array;
+  /** No point of it is farther than this from the surface. */ error: number;
+  /** And none is nearer than this. */ clearance: number;
+  /** Contains the volume of the solid that it bounds. */ volume: Interval;
+  /** With a gap: rows of `triangles` that are across what it fills, where `error` does not hold. */ bridges: Uint32Array;
+  /** No point of these is farther than this from the surface. */ bridgeDistance: number;
+  /** 'complete': all guarantees hold; else 'budget-spent' or 'at-rounding'. */ outcome: Outcome;
+  /** Unless 'complete', some of the failures. */ problems: HullProblem[];
+}
+export interface MeasureStats {
+  /** Pieces split. */ splits: number;
+}
+export interface Measures {
+  /** 'complete': all are as narrow as requested; else 'budget-spent' or 'at-rounding'. */ outcome: Outcome;
+  /** Contains the area. */ area: Interval;
+  /** Does the surface bound a solid? */ closed: boolean;
+  /** Contains the volume, if the surface is closed. */ volume: Interval | null;
+  /** x, y, z; none where the volume may be 0. */ centroid: [Interval, Interval, Interval] | null;
+  /** xx, yy, zz, xy, yz, zx of the tensor about the centroid with density 1; none likewise. */ inertia: [Interval, Interval, Interval, Interval, Interval, Interval] | null;
+  /** The work that was done. */ stats: MeasureStats;
 }
 export interface OneSidedDistance {
-  distance: Interval;
-  /** The farthest point found, off by at most `error` a coordinate, and a point of the other set near it. */
-  point: Point;
-  error: number;
-  at: Place | null;
-  nearest: Point;
+  /** Contains the greatest distance of a point of one set from the other, in mesh units. */ distance: Interval;
+  /** The farthest point found. */ point: Point;
+  /** Upper bound, per coordinate, of the distance of `point` from its set. */ error: number;
+  /** Where it lies, if its set is a surface. */ at: Place | null;
+  /** A point of the other set near it. */ nearest: Point;
 }
 export interface Deviation {
-  fromSurface: OneSidedDistance;
-  fromCandidate: OneSidedDistance;
-  outcome: Outcome;
+  /** Of points of the surface from the candidate. */ fromSurface: OneSidedDistance;
+  /** Of points of the candidate from the surface. */ fromCandidate: OneSidedDistance;
+  /** With solid: how far the candidate lies inside. */ inside: OneSidedDistance | null;
+  /** With solid: how far the candidate lies outside. */ outside: OneSidedDistance | null;
+  /** 'complete': each interval is as narrow as requested or, with a threshold, each question answered. */ outcome: Outcome;
 }
+// End of these answers.
 
 /** A limit surface. It lives outside of JavaScript's memory: delete() it. */
 export interface Surface {
@@ -326,8 +406,9 @@ export interface Surface {
   selfContact(options?: { within?: number; radius?: number; maxSplits?: number }): SelfContact;
   /** How far the limit surface may be from the faces of its control mesh; null with a dual scheme. */
   limitToFaces(): number | null;
-  /** volume is null unless the surface is closed. */
-  measure(options?: { relative?: number; maxSplits?: number }): { area: Interval; volume: Interval | null; outcome: Outcome };
+  measure(options?: { relative?: number; maxSplits?: number }): Measures;
+  /** The control mesh after `level` (1) steps of subdivision; limit: at limit positions. */
+  subdivided(level?: number, limit?: boolean): Cage;
   delete(): void;
 }
 
@@ -339,6 +420,12 @@ export interface SnugModule {
   fromGeometry(geometry: Geometry, options?: ReadOptions): Surface;
   collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
   distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;
+  /** Where they touch: points at most `within` from each other, and curves within `error`; both default to 0.1 % of the larger size. */
+  contacts(
+    a: Surface,
+    b: Surface,
+    options?: { poseA?: Pose; poseB?: Pose; within?: number; error?: number; curves?: boolean; maxSplits?: number },
+  ): Contacts;
   /** Of two closed surfaces: the shortest translation that separates the solids. */
   penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number; maxSplits?: number }): Penetration;
   /** When do moving surfaces first touch? Motions pass through a list of poses, one unit of time from each to the next. */
@@ -351,7 +438,7 @@ export interface SnugModule {
   deviation(
     surface: Surface,
     triangles: { positions: Numbers; triangles: Numbers },
-    options?: { absolute?: number; threshold?: number; maxSplits?: number },
+    options?: { absolute?: number; threshold?: number; solid?: boolean; maxSplits?: number },
   ): Deviation;
   /** after: a pose to begin with; then rotated about an axis (z) through the origin, then moved. */
   pose(steps: { after?: Pose; axis?: readonly number[]; degrees?: number; move?: readonly number[] }): number[];

@@ -113,6 +113,9 @@ export default async function Snug({ wasm } = {}) {
     measure(options = {}) {
       return checked(module.measure(Surface.part(this), options));
     }
+    subdivided(level = 1, limit = false) {
+      return checked(module.subdivided(Surface.part(this), level, limit));
+    }
     delete() {
       this.#part?.delete();
       this.#part = null;
@@ -127,6 +130,7 @@ export default async function Snug({ wasm } = {}) {
       new Surface(checked(module.fromArrays(arraysOf(geometry), { scheme: "flat", weld: 0, ...options })).part),
     collide: (a, b, options = {}) => checked(module.collide(Surface.part(a), Surface.part(b), options)),
     distance: (a, b, options = {}) => checked(module.distance(Surface.part(a), Surface.part(b), options)),
+    contacts: (a, b, options = {}) => checked(module.contacts(Surface.part(a), Surface.part(b), options)),
     penetration: (a, b, options = {}) => checked(module.penetration(Surface.part(a), Surface.part(b), options)),
     timeOfContact: (a, b, options = {}) => checked(module.timeOfContact(Surface.part(a), Surface.part(b), options)),
     deviation: (surface, triangles, options = {}) => checked(module.deviation(Surface.part(surface), triangles, options)),

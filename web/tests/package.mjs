@@ -295,6 +295,30 @@ test("asks about itself, motions, rays, envelopes and deviations as the native l
   assert.ok(pin.closestPoint(there.point, { absolute: 1e-9 }).distance[0] <= 1e-9 && there.normal.length === 3);
 });
 
+test("lists contacts as the native library does, member by member", () => {
+  const [bracket, pin] = [model("bracket.obj"), model("pin.obj")], poseB = snug.pose({ move: [0, 0, 0.5] });
+  const native = ask("collide", join(models, "bracket.obj"), join(models, "pin.obj"), "--place-b", poseB.join(" "), "--all");
+  const own = snug.contacts(bracket, pin, { poseB });
+  const names = (object) => Object.keys(object).map((name) => name.replace(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`));
+  assert.ok(own.regions.length > 0 && own.curves.length > 0);
+  for (const list of ["regions", "curves"]) assert.deepStrictEqual(names(own[list][0]), Object.keys(native[list][0]));
+  assert.deepStrictEqual(own.regions.map((r) => [r.verdict, r.distance, r.box, r.witness, r.witnessError, places(r.witnessAt), r.owners.map((list) => [...list]), r.contacts.length]),
+    native.regions.map((r) => [r.verdict, r.distance, r.box, r.witness, r.witness_error, places(r.witness_at), r.owners, r.contacts.length]));
+  assert.deepStrictEqual(own.curves.map((c) => [c.region, c.closed, c.proved, c.error, c.atBorder, [...c.points], c.boxes.map((b) => [b.box, b.oneArc])]),
+    native.curves.map((c) => [c.region, c.closed, c.proved, c.error, c.at_border, c.points.flat(), c.boxes.map((b) => [b.box, b.one_arc])]));
+  assert.deepStrictEqual([own.exhaustive, own.open.length], [native.exhaustive, native.open.length]);
+  assert.deepStrictEqual(names(snug.penetration(bracket, pin, { poseB })), ["depth", "translation", "outcome"]);
+  assert.deepStrictEqual(names(bracket.measure()), Object.keys(ask("measure", join(models, "bracket.obj"))).filter((name) => names(bracket.measure()).includes(name)));
+});
+
+test("subdivides as the native library does", () => {
+  const file = join(scratch, "finer.obj");
+  spawnSync(command, ["subdivide", join(models, "pawn.obj"), "--level", "2", "-o", file]);
+  const own = model("pawn.obj").subdivided(2), native = snug.read("finer.obj", readFileSync(file)).cage();
+  assert.deepStrictEqual(own, native);
+  assert.equal(model("pawn.obj").subdivided(1, true).offsets.length, model("pawn.obj").subdivided(1).offsets.length);
+});
+
 test("says what triangles are taken to be", () => {
   const points = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [4 * (k & 1), k & 2, (k & 4) / 4].join(" "));
   const faces = ["0 2 3", "0 3 1", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 6 7", "2 7 3", "0 4 6", "0 6 2", "1 3 7", "1 7 5"];
