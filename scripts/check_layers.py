@@ -15,7 +15,7 @@ import tempfile
 
 # A folder includes itself and folders before it, but for the exceptions. `support` is src/support, included as <support/...>:
 # what the library and its programs share.
-ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "shape", "bvh", "surface", "search", "certificate", "query", "independence",
+ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "shape", "spline", "bvh", "surface", "search", "certificate", "query", "independence",
          "io", "caster"]
 SHARED = ORDER[0]
 EXCEPTIONS = {

@@ -30,6 +30,10 @@ void require_output(const std::string& command, const std::string& output) {
   if (output.empty() || output == "-") return;
   if (command == "subdivide" || command == "tessellate" || command == "envelope" || command == "fit") {
     static_cast<void>(format_of(output));
+  } else if (command == "convert") {
+    if (!output.ends_with(".step") && !output.ends_with(".stp")) {
+      throw UsageError("-o " + output + ": convert writes STEP; give a file that ends in .step or .stp");
+    }
   } else if (command == "view") {
     if (!output.ends_with(".html")) {
       throw UsageError("-o " + output + ": view writes a page; give a file that ends in .html");

@@ -136,6 +136,7 @@ class Report {
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command subdivide_command();
 [[nodiscard]] Command tessellate_command();
+[[nodiscard]] Command convert_command();
 [[nodiscard]] Command hull_command();
 [[nodiscard]] Command envelope_command();
 [[nodiscard]] Command collide_command();

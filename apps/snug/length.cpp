@@ -1,5 +1,6 @@
 #include "length.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -22,10 +23,34 @@ std::string_view trimmed(std::string_view text) {
   return begin == std::string_view::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
+struct UnitName {
+  std::string_view word, unit;
+  double metres;
+};
+// Longer words before those that they end with.
+constexpr std::array<UnitName, 5> unit_names{{{"mm", "mm", 1e-3},
+                                              {"cm", "cm", 1e-2},
+                                              {"inch", "inch", 0.0254},
+                                              {"in", "inch", 0.0254},
+                                              {"m", "m", 1}}};
+
+double metres_of(std::string_view unit) {
+  for (const UnitName& known : unit_names) {
+    if (known.unit == unit) return known.metres;
+  }
+  return 1;
+}
+
 }  // namespace
 
-double Length::in_mesh_units(double size) const {
-  const double result = percent ? number / 100 * size : number;
+double Length::in_mesh_units(double size, const std::string& units) const {
+  if (!unit.empty() && units.empty()) {
+    throw UsageError(
+        "a length in " + unit +
+        " needs a mesh whose units are known: give it in mesh units or percent of the size (1%)");
+  }
+  const double in_own = unit == units || unit.empty() ? number : number * metres_of(unit) / metres_of(units);
+  const double result = percent ? number / 100 * size : in_own;
   if (!std::isfinite(result) || (number > 0 && !(result > 0))) {
     throw InputError(InputProblem::refused,
                      "a length in percent does not fit a double for a mesh of this size: give it "
@@ -40,6 +65,13 @@ Length parse_length(const std::string& text, const std::string& option, bool zer
   if (digits.ends_with('%')) {
     length.percent = true;
     digits = trimmed(digits.substr(0, digits.size() - 1));
+  } else {
+    for (const UnitName& known : unit_names) {
+      if (!digits.ends_with(known.word)) continue;
+      length.unit = known.unit;
+      digits = trimmed(digits.substr(0, digits.size() - known.word.size()));
+      break;
+    }
   }
   if (!parse_number(digits, length.number) || length.number < 0 || (length.number == 0 && !zero_allowed)) {
     throw UsageError(option + ": '" + text + "' is not a " + (zero_allowed ? "length" : "positive length") +

@@ -4,6 +4,7 @@
 /// alone, not on threads or earlier queries.
 
 #include <snug/bound.h>
+#include <snug/brep.h>
 #include <snug/collide.h>
 #include <snug/contacts.h>
 #include <snug/curves.h>

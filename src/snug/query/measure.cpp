@@ -9,6 +9,7 @@
 
 #include <snug/geometry/interval.h>
 #include <snug/patch/evaluate.h>
+#include <snug/patch/quarters.h>
 #include <snug/search/solid.h>
 #include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/moment_kernel.h>
@@ -65,12 +66,8 @@ struct Goal {
   double gap, tips, weight;
 };
 
-// A piece that is not regular.
-struct Net {
-  const Kind* kind;
-  std::vector<kernels::NetPoint> points;
-  double largest, error;
-  // Of pieces that wait to be split.
+// A piece that is not regular, and waits to be split.
+struct Net : ControlNet {
   PieceArea area{};
   Point3 middle{};
   double extent = 0;   // of the box around the points, by its diagonal
@@ -91,9 +88,7 @@ class PatchMeasurer {
     regular_.clear();
     surface_.patch(p, patch_);
     middle_ = patch_.origin - origin_;
-    Net whole{patch_.kind, {}, patch_.largest, patch_.error};
-    for (const Vector3& point : patch_.points) whole.points.push_back({point.x, point.y, point.z, 0});
-    open(std::move(whole));
+    open({control_net(patch_)});
     split_tips(goal.tips);
     integrate_regular();
     narrow_area(goal.gap);
@@ -102,14 +97,9 @@ class PatchMeasurer {
 
  private:
   void open(Net net) {
-    const Kind& kind = *net.kind;
-    if (kind.polynomial()) {
-      const KindLattice& lattice = kind.lattice();
-      double error = net.error;
-      if (lattice.ghosts.row_count() > 0)
-        error = append_rows(lattice.ghosts, net, net.points, net.largest, error);
-      add_regular(net.points, lattice.places, net.largest, error);
-    } else if (kind.transient() && result_.splits < patch_splits_) {
+    if (net.kind->polynomial()) {
+      add_regular(with_ghosts(net));
+    } else if (net.kind->transient() && result_.splits < patch_splits_) {
       refine(net);
     } else {
       bound_area(net);
@@ -117,42 +107,23 @@ class PatchMeasurer {
     }
   }
 
-  // Rows of a net after other points; returns their common error and raises `largest`.
-  static double append_rows(const Stencils& rows, const Net& net, std::vector<kernels::NetPoint>& to,
-                            double& largest, double error) {
-    const std::size_t begin = to.size();
-    const double from_largest = net.largest;
-    to.resize(begin + rows.row_count());
-    largest = std::max(largest, kernels::refine_net(rows, net.points.data(), to.data() + begin));
-    return std::max(error, rows.result_error(from_largest, net.error));
-  }
-
   void refine(const Net& net) {
     monitor_.checkpoint();
     ++result_.splits;
-    const KindStep& step = net.kind->step();
-    std::vector<kernels::NetPoint> points;
-    points.reserve(step.stencils.row_count() + step.ghosts.row_count());
-    double largest = 0;
-    const double plain = append_rows(step.stencils, net, points, largest, 0);
-    double error = plain;
-    if (step.ghosts.row_count() > 0) error = append_rows(step.ghosts, net, points, largest, plain);
-    for (const KindStep::Piece& piece : step.pieces) {
-      if (!piece.lattice.empty()) {
-        add_regular(points, piece.lattice, largest, error);
-        continue;
+    const NetQuarters quarters(net);
+    for (std::size_t k = 0; k < NetQuarters::count(); ++k) {
+      if (quarters.regular(k)) {
+        add_regular(quarters.lattice(k));
+      } else {
+        open({quarters.net(k)});
       }
-      Net child{piece.kind, {}, largest, plain};
-      child.points.reserve(piece.control.size());
-      for (const std::uint32_t i : piece.control) child.points.push_back(points[i]);
-      open(std::move(child));
     }
   }
 
-  void add_regular(const std::vector<kernels::NetPoint>& points, std::span<const std::uint32_t> lattice,
-                   double largest, double error) {
-    RegularPiece piece{surface_.rules().basis, {}, largest, error, middle_, unit_roundoff * max_abs(middle_)};
-    for (std::size_t i = 0; i < lattice.size(); ++i) piece.points[i] = points[lattice[i]];
+  void add_regular(const LatticeNet& net) {
+    RegularPiece piece{surface_.rules().basis,          {}, net.largest, net.error, middle_,
+                       unit_roundoff * max_abs(middle_)};
+    for (std::size_t i = 0; i < net.lattice.size(); ++i) piece.points[i] = net.points[net.lattice[i]];
     regular_.push_back(piece);
     if (regular_.size() == max_regular) integrate_regular();
   }

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <snug/geometry.h>
+
+namespace snug {
+
+class Surface;
+
+namespace default_splits {
+inline constexpr std::uint64_t brep = 10'000'000;
+}
+
+/// A B-spline curve: points.size() + degree + 1 knots in rising order, of which the first and the last degree + 1 are equal.
+struct SplineCurve {
+  unsigned degree = 0;
+  std::vector<double> knots;
+  std::vector<Point3> points;
+};
+
+/// A tensor-product B-spline surface of the same degree in u and v, knots likewise. Point (i, j) stands at i + columns() j.
+struct SplineSurface {
+  unsigned degree = 0;
+  std::vector<double> u_knots, v_knots;
+  std::vector<Point3> points;
+  [[nodiscard]] std::size_t columns() const { return u_knots.size() - degree - 1; }
+  [[nodiscard]] std::size_t rows() const { return v_knots.size() - degree - 1; }
+};
+
+/// Faces that share edges: a limit surface as B-spline surfaces, as CAD programs have them.
+struct Brep {
+  struct Edge {
+    std::array<std::uint32_t, 2> vertices;  ///< where the curve begins and ends
+    SplineCurve curve;
+  };
+  struct Side {
+    std::uint32_t edge;
+    bool reversed;  ///< runs against the curve
+  };
+  struct Face {
+    SplineSurface surface;
+    std::vector<Side> loop;  ///< all of its border, counter-clockwise seen from outside
+    std::uint32_t owner;     ///< a face of the mesh that it lies over; in a dual scheme, a vertex
+    double error;            ///< proved: at each parameter no farther from the limit point there than this
+  };
+  /// Faces that edges join: faces[begin] to faces[end - 1].
+  struct Shell {
+    std::uint32_t begin, end;
+    bool closed;
+    std::optional<std::uint32_t>
+        void_of{};  ///< the shell around it, if it is a hollow inside of another one's solid
+  };
+
+  std::vector<Point3> vertices;
+  std::vector<Edge> edges;
+  std::vector<Face> faces;
+  std::vector<Shell> shells;
+  double error = 0;  ///< the largest of the faces'
+  double gap = 0;    ///< proved: borders of faces and the curves of their edges are nowhere farther apart
+  double break_angle =
+      0;  ///< degrees: largest angle of faces across edges in which the surface is smooth, where it was looked
+  std::size_t spans = 0;  ///< polynomials in all faces
+  bool complete = true;   ///< are `error` and `break_angle` as small as requested?
+};
+
+struct BrepOptions {
+  /// > 0, mesh units: largest distance of faces from the limit surface. Default: 0.01 % of its size.
+  std::optional<double> error{};
+  /// In (0, 90], degrees: largest angle of faces across smooth edges.
+  std::optional<double> max_angle{};
+};
+
+/// A limit surface as B-spline faces: exact, up to rounding, where it is polynomial; beside extraordinary vertices and decaying
+/// creases with as many spans as the error takes. Regular faces in rows and columns become one.
+///
+/// Guarantee: Brep::error, Brep::Face::error and Brep::gap are proved for the doubles returned, whether it is `complete` or not.
+///            Neighbours share their edges; of a closed surface each belongs to two faces.
+/// Budget:    10,000,000 spans; 200 bytes each.
+/// Errors:    InputError: (value) for an error that is not finite and positive, or smaller than doubles allow; (refused) for a
+///            scheme of triangles, for an edge of more than two faces or with faces that run along it in the same direction, and
+///            for a face that is its own neighbour; (unrepresentable). Interrupted.
+/// Cost:      10 microseconds a regular face, 200 beside an extraordinary vertex.
+/// Source:    docs/derivations/brep.md.
+[[nodiscard]] SNUG_API Brep to_brep(const Surface& surface, const BrepOptions& options = {},
+                                    const Run& run = {});
+
+/// Lengths of a STEP file.
+enum class LengthUnit : std::uint8_t { millimetre, centimetre, metre, inch };
+
+struct StepOptions {
+  std::string name = "part";  ///< of the product
+  LengthUnit unit = LengthUnit::millimetre;
+  bool ap214 = false;  ///< an older protocol than AP242, for readers that know no other
+};
+
+/// A part as STEP text (ISO 10303-21): a solid for each closed shell that is no void, a surface model of the others.
+/// Guarantee: coordinates are read back as the same doubles.
+[[nodiscard]] SNUG_API std::string format_step(const Brep& brep, const StepOptions& options = {});
+
+}  // namespace snug

@@ -1,0 +1,95 @@
+#include <snug/io/step_text.h>
+
+#include <cstdint>
+
+#include <support/number.h>
+
+namespace snug {
+namespace {
+
+// The code points of a UTF-8 text; of bytes that are none each one by itself.
+std::u32string code_points(std::string_view utf8) {
+  std::u32string points;
+  for (std::size_t i = 0; i < utf8.size();) {
+    const auto lead = static_cast<unsigned char>(utf8[i]);
+    const std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc0 ? 1 : 0;
+    char32_t point = more == 0 ? lead : lead & (0x3fu >> more);
+    std::size_t k = 1;
+    for (; k <= more && i + k < utf8.size() && (static_cast<unsigned char>(utf8[i + k]) & 0xc0u) == 0x80; ++k)
+      point = point << 6 | (static_cast<unsigned char>(utf8[i + k]) & 0x3fu);
+    points += k == more + 1 ? point : char32_t{lead};
+    i += k == more + 1 ? k : 1;
+  }
+  return points;
+}
+
+void append_hex(std::string& text, std::uint32_t number, int digits) {
+  for (int k = digits - 1; k >= 0; --k) text += "0123456789ABCDEF"[(number >> (4 * k)) & 15u];
+}
+
+}  // namespace
+
+void append_step_real(std::string& text, double x) {
+  std::string number;
+  append_real(number, x);
+  const std::size_t exponent = number.find_first_of("eE");
+  std::string mantissa = number.substr(0, exponent);
+  if (mantissa.find('.') == std::string::npos) mantissa += '.';
+  text += mantissa;
+  if (exponent == std::string::npos) return;
+  text += 'E';
+  text += number.substr(exponent + 1);
+}
+
+std::string step_string(std::string_view utf8) {
+  std::string text = "'";
+  for (const char32_t c : code_points(utf8)) {
+    if (c == U'\'' || c == U'\\') {
+      text.append(2, static_cast<char>(c));
+    } else if (c >= 32 && c < 127) {
+      text += static_cast<char>(c);
+    } else if (c <= 0xffff) {
+      text += "\\X2\\";
+      append_hex(text, c, 4);
+      text += "\\X0\\";
+    } else {
+      text += "\\X4\\";
+      append_hex(text, c, 8);
+      text += "\\X0\\";
+    }
+  }
+  return text + "'";
+}
+
+void StepText::begin(const std::string& name, std::string_view schema) {
+  text_ = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME(" + step_string(name) +
+          ",'',(''),(''),'snug','snug','');\nFILE_SCHEMA(('";
+  text_ += schema;
+  text_ += "'));\nENDSEC;\nDATA;\n";
+}
+
+std::size_t StepText::point(const Point3& p) { return triple("CARTESIAN_POINT('',(", p.x, p.y, p.z); }
+std::size_t StepText::direction(const Vector3& v) { return triple("DIRECTION('',(", v.x, v.y, v.z); }
+
+std::size_t StepText::triple(std::string_view entity, double x, double y, double z) {
+  std::string numbers;
+  append_step_real(numbers, x);
+  numbers += ',';
+  append_step_real(numbers, y);
+  numbers += ',';
+  append_step_real(numbers, z);
+  return add(entity, numbers, "))");
+}
+
+void StepText::list(std::string& list, std::size_t number) {
+  if (!list.empty()) list += ',';
+  list += '#';
+  list += std::to_string(number);
+}
+
+std::string StepText::finish() {
+  text_ += "ENDSEC;\nEND-ISO-10303-21;\n";
+  return std::move(text_);
+}
+
+}  // namespace snug

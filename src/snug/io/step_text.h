@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include <support/point.h>
+
+namespace snug {
+
+/// A number of an entity.
+struct StepRef {
+  std::size_t number;
+};
+
+/// Adds a real as ISO 10303-21 writes it, with a decimal point; it is read back as the same double.
+void append_step_real(std::string& text, double x);
+/// A string in quotes; other characters than those of ASCII as \X2\...\X0\.
+[[nodiscard]] std::string step_string(std::string_view utf8);
+
+/// The text of an exchange structure, entity by entity.
+class StepText {
+ public:
+  void begin(const std::string& name, std::string_view schema);
+  /// An entity of such parts; its number.
+  template <class... Parts>
+  std::size_t add(const Parts&... parts) {
+    text_ += '#';
+    text_ += std::to_string(++count_);
+    text_ += '=';
+    (append(parts), ...);
+    text_ += ";\n";
+    return count_;
+  }
+  std::size_t point(const Point3& p);
+  std::size_t direction(const Vector3& v);
+  /// Adds #number to a list that commas part.
+  static void list(std::string& list, std::size_t number);
+  [[nodiscard]] std::string finish();
+
+ private:
+  void append(std::string_view part) { text_ += part; }
+  void append(StepRef part) {
+    text_ += '#';
+    text_ += std::to_string(part.number);
+  }
+  std::size_t triple(std::string_view entity, double x, double y, double z);
+
+  std::string text_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace snug

@@ -1,0 +1,103 @@
+#include <snug/query/brep_voids.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <snug/spline/face_spline.h>
+
+namespace snug {
+namespace {
+
+// Beyond so many shells none is looked for in another: the time is that of all pairs.
+constexpr std::size_t most_shells = 100;
+
+struct Sampled {
+  Box3 box;
+  std::vector<Triangle> triangles;
+  double volume = 0;
+};
+
+Sampled sampled(std::span<const Brep::Face> faces) {
+  Sampled result;
+  for (const Brep::Face& face : faces) {
+    const std::vector<double> u = breaks_of(face.surface.u_knots), v = breaks_of(face.surface.v_knots);
+    std::vector<Point3> points;
+    for (const double y : v) {
+      for (const double x : u) points.push_back(frame_at(face.surface, x, y).point);
+    }
+    for (std::size_t j = 0; j + 1 < v.size(); ++j) {
+      for (std::size_t i = 0; i + 1 < u.size(); ++i) {
+        const std::size_t a = i + u.size() * j, b = a + 1, c = b + u.size(), d = a + u.size();
+        result.triangles.push_back({points[a], points[b], points[c]});
+        result.triangles.push_back({points[a], points[c], points[d]});
+      }
+    }
+    for (const Point3& p : points) result.box.add(p);
+  }
+  const Point3 origin = result.box.lower;
+  for (const auto& [a, b, c] : result.triangles)
+    result.volume += dot(a - origin, cross(b - origin, c - origin)) / 6;
+  return result;
+}
+
+bool within(const Box3& outer, const Box3& inner) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (inner.lower[k] < outer.lower[k] || inner.upper[k] > outer.upper[k]) return false;
+  }
+  return true;
+}
+
+// Does a shell wind around a point? By solid angles.
+bool around(const Sampled& shell, const Point3& point) {
+  double sum = 0;
+  for (const auto& [p, q, r] : shell.triangles) {
+    const Vector3 a = p - point, b = q - point, c = r - point;
+    const double la = length(a), lb = length(b), lc = length(c);
+    sum += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  }
+  return std::fabs(sum) > 3.14159265358979;  // half of the full angle, which is twice as much
+}
+
+void turn_over(Brep::Face& face) {
+  SplineSurface& s = face.surface;
+  const std::size_t columns = s.columns(), rows = s.rows();
+  std::vector<Point3> points;
+  points.reserve(s.points.size());
+  for (std::size_t i = 0; i < columns; ++i) {
+    for (std::size_t j = 0; j < rows; ++j) points.push_back(s.points[i + columns * j]);
+  }
+  s.points = std::move(points);
+  std::swap(s.u_knots, s.v_knots);
+  std::reverse(face.loop.begin(), face.loop.end());
+  for (Brep::Side& side : face.loop) side.reversed = !side.reversed;
+}
+
+}  // namespace
+
+void find_voids(Brep& brep) {
+  std::vector<std::uint32_t> closed;
+  std::vector<Sampled> samples;
+  for (std::uint32_t s = 0; s < brep.shells.size(); ++s) {
+    const Brep::Shell& shell = brep.shells[s];
+    if (!shell.closed) continue;
+    closed.push_back(s);
+    samples.push_back(sampled({brep.faces.data() + shell.begin, brep.faces.data() + shell.end}));
+  }
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    std::optional<std::size_t> outer;
+    for (std::size_t k = 0; k < closed.size() && closed.size() <= most_shells; ++k) {
+      if (k == i || !within(samples[k].box, samples[i].box)) continue;
+      if (!around(samples[k], samples[i].triangles.front()[0])) continue;
+      if (!outer || within(samples[*outer].box, samples[k].box)) outer = k;
+    }
+    Brep::Shell& shell = brep.shells[closed[i]];
+    if (outer && samples[i].volume < 0 && samples[*outer].volume > 0) {
+      shell.void_of = closed[*outer];
+    } else if (samples[i].volume < 0 && !outer) {
+      for (std::uint32_t f = shell.begin; f < shell.end; ++f) turn_over(brep.faces[f]);
+    }
+  }
+}
+
+}  // namespace snug

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include <snug/patch/quarters.h>
+#include <support/point.h>
+
+namespace snug {
+
+/// A tensor-product polynomial of the same degree, 1 to 3, in u and v: by (degree + 1)^2 control points, u innermost, of a
+/// B-spline with these 2 degree knots each way that matter to it. Of a uniform B-spline they are a lattice, with knots 0 and 1
+/// alone Bezier points.
+struct TensorPiece {
+  static constexpr std::size_t max_degree = 3, max_count = (max_degree + 1) * (max_degree + 1);
+
+  std::size_t degree = 0;
+  std::array<double, 2 * max_degree> u{}, v{};  ///< knots
+  std::array<Vector3, max_count> points{};
+  double largest = 0;  ///< |coordinate|
+  double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
+
+  [[nodiscard]] std::size_t width() const { return degree + 1; }
+  [[nodiscard]] std::size_t count() const { return width() * width(); }
+  [[nodiscard]] Vector3& at(std::size_t i, std::size_t j) { return points[i + width() * j]; }
+  [[nodiscard]] const Vector3& at(std::size_t i, std::size_t j) const { return points[i + width() * j]; }
+};
+
+/// A rectangle of parameters.
+struct ParameterBox {
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+};
+
+/// A regular piece on [0, 1]^2.
+/// Requires:  a tensor basis of this degree.
+[[nodiscard]] TensorPiece tensor_piece(const LatticeNet& net, std::size_t degree);
+/// The Bezier points 0 to degree each way as knots say.
+[[nodiscard]] TensorPiece bezier_piece(std::size_t degree);
+
+/// Sets `largest` from the points.
+void take_largest(TensorPiece& piece);
+
+/// The polynomial's polar form: degree arguments each way, any.
+[[nodiscard]] Vector3 blossom(const TensorPiece& piece, std::span<const double> u, std::span<const double> v);
+/// The value at a parameter.
+[[nodiscard]] Vector3 value(const TensorPiece& piece, double u, double v);
+/// Value, derivatives along u and v, and the mixed one, of Bezier points at one of their corners: x, y are 0 or 1.
+struct CornerJet {
+  Vector3 point, along_u, along_v, twist;
+};
+[[nodiscard]] CornerJet corner_jet(const TensorPiece& bezier, std::size_t x, std::size_t y);
+
+/// The polynomial on a part of its parameters, by Bezier points.
+/// Guarantee: `error` covers this, too.
+/// Requires:  a part of the square between the middle knots; parameters and knots of few digits, whose differences are exact.
+[[nodiscard]] TensorPiece bezier_on(const TensorPiece& piece, const ParameterBox& box);
+/// The same polynomial with degree 3. Errors likewise.
+/// Requires:  Bezier points.
+[[nodiscard]] TensorPiece raised(const TensorPiece& bezier);
+/// Turned so that side k is where side 0 was: (u, v) of the result is at corner k, u along side k.
+/// Requires:  knots that are the same from both ends, as those of lattices and of Bezier points.
+[[nodiscard]] TensorPiece turned(const TensorPiece& piece, std::size_t k);
+
+/// Upper bound of |a(u, v) - b(u, v)| on [0, 1]^2, errors included.
+/// Requires:  Bezier points of the same degree.
+[[nodiscard]] double distance_bound(const TensorPiece& a, const TensorPiece& b);
+
+}  // namespace snug

@@ -1,0 +1,70 @@
+#include <support/read_file.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "run_snug.h"
+
+namespace snug::testing::convert_test {
+namespace {
+
+using nlohmann::json;
+
+std::string text_of(const std::string& path) { return read_file(path); }
+
+TEST(convert, writes_a_solid_and_says_how_near_it_is) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("bracket.step");
+  const Outcome outcome =
+      run_snug({"convert", model("bracket.obj"), "-o", file, "--error", "0.01mm", "--units", "cm", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["error"], 0.001);
+  EXPECT_LE(found["error_bound"], 0.001);
+  EXPECT_LE(found["gap_bound"], 1e-13);
+  EXPECT_EQ(found["complete"], true);
+  EXPECT_EQ(found["solids"], 1);
+  EXPECT_EQ(found["sheets"], 0);
+  EXPECT_GE(found["spans"], found["faces"]);
+  const std::string text = text_of(file);
+  EXPECT_EQ(found["bytes"], text.size());
+  EXPECT_NE(text.find("MANIFOLD_SOLID_BREP('bracket'"), std::string::npos);
+  EXPECT_NE(text.find("SI_UNIT(.CENTI.,.METRE.)"), std::string::npos);
+  // The same to standard output.
+  EXPECT_EQ(run_snug({"convert", model("bracket.obj"), "-o", "-", "--error", "0.01mm", "--units", "cm"}).out,
+            text);
+}
+
+TEST(convert, says_what_it_cannot_do_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  const auto refused = [&](std::vector<std::string> arguments, int status, const std::string& text) {
+    arguments.insert(arguments.begin(), "convert");
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    EXPECT_NE(outcome.err.find(text), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  };
+  refused({model("bracket.obj")}, 2, "-o FILE.step is missing");
+  refused({model("bracket.obj"), "-o", folder.file("a.stl")}, 2, ".step or .stp");
+  refused({model("bracket.obj"), "-o", folder.file("a.step"), "--error", "1furlong"}, 2,
+          "not a positive length");
+  refused({model("bracket.obj"), "-o", folder.file("a.step"), "--error", "1e-20"}, 4, "the least is");
+  refused({model("bust.obj"), "-o", folder.file("a.step")}, 4, "schemes of quads");
+}
+
+TEST(convert, lengths_with_a_unit_need_a_mesh_with_one) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_snug({"tessellate", model("bracket.obj"), "-o", folder.file("a.ply"), "--error", "0.1mm"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("a length in mm needs a mesh whose units are known"), std::string::npos)
+      << outcome.err;
+}
+
+}  // namespace
+}  // namespace snug::testing::convert_test
