@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <span>
 #include <tuple>
 
@@ -157,7 +159,9 @@ double hull_distance(const ControlNet& net, const TensorPiece& bezier) {
   return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
 }
 
-double tip_distance(std::span<const PartNet> nets, const TensorPiece& bezier, std::size_t degree) {
+// At least as much as that; no nearer to it than `sufficient`.
+double tip_distance(std::span<const PartNet> nets, const TensorPiece& bezier, std::size_t degree,
+                    double sufficient) {
   struct Part {
     ControlNet net;
     TensorPiece bezier;
@@ -174,7 +178,9 @@ double tip_distance(std::span<const PartNet> nets, const TensorPiece& bezier, st
   for (const PartNet& part : nets) add(part.net, bezier_on(bezier, part.box), 0);
   double largest = 0;  // of what is polynomial
   for (unsigned steps = 0; !parts.empty() && parts.front().bound > largest; ++steps) {
-    if (steps == most_bound_pieces || parts.front().level >= bound_splits) return parts.front().bound;
+    if (steps == most_bound_pieces || parts.front().level >= bound_splits ||
+        parts.front().bound <= sufficient)
+      return parts.front().bound;
     std::pop_heap(parts.begin(), parts.end(), farther);
     const Part part = std::move(parts.back());
     parts.pop_back();
@@ -222,22 +228,6 @@ ParameterBox half_box(std::size_t k, bool along_u) {
   return along_u ? ParameterBox{low, low + 0.5, 0, 1} : ParameterBox{0, 1, low, low + 0.5};
 }
 
-// Does a tip go on along its sides as the two did that it stands for? Up to rounding.
-bool same_sides(const TensorPiece& whole, const TensorPiece& a, const TensorPiece& b, bool along_u) {
-  const double tolerance = 0x1p-40 * whole.largest;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const TensorPiece half = bezier_on(whole, half_box(k, along_u));
-    const TensorPiece& part = k == 0 ? a : b;
-    for (std::size_t i = 0; i <= part.degree; ++i) {
-      for (const std::size_t side : {std::size_t{0}, part.degree}) {
-        const std::size_t x = along_u ? i : side, y = along_u ? side : i;
-        if (max_abs(half.at(x, y) - part.at(x, y)) > tolerance) return false;
-      }
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 unsigned QuadPiece::corners() const {
@@ -274,6 +264,7 @@ QuadPieces::QuadPieces(const Patch& patch, const QuadDepths& depths, double erro
     merge(true);
     merge(false);
   }
+  fit_tips();
   pieces_.reserve(drafts_.size());
   for (Draft& draft : drafts_) pieces_.push_back(std::move(draft.piece));
 }
@@ -309,41 +300,109 @@ void QuadPieces::open(ControlNet net, const QuadPiece& place) {
 
 void QuadPieces::add_tip(ControlNet net, const QuadPiece& place) {
   Draft tip{place, {}};
-  tip.nets.push_back({std::move(net), {}});
-  tip.piece.piece = TipFit(tip.nets, place.box(), degree_, evaluator_).bezier();
   tip.piece.tip = true;
-  tip.piece.distance = tip_distance(tip.nets, tip.piece.piece, degree_);
+  tip.nets.push_back({std::move(net), {}});
   drafts_.push_back(std::move(tip));
   ++tips_;
 }
 
-// One piece for two, if it is the same polynomial up to rounding; tips if they are near enough, and the same on the border.
+// Tips beside a decaying crease are fitted as long as one polynomial will do: all of a block of tips along a side, or its halves.
+void QuadPieces::fit_tips() {
+  const auto first =
+      std::partition(drafts_.begin(), drafts_.end(), [](const Draft& d) { return !d.piece.tip; });
+  std::vector<Draft> tips(std::make_move_iterator(first), std::make_move_iterator(drafts_.end()));
+  drafts_.erase(first, drafts_.end());
+  std::set<std::tuple<unsigned, std::uint32_t, std::uint32_t>> places;
+  for (const Draft& tip : tips) places.insert({tip.piece.level, tip.piece.i, tip.piece.j});
+  const auto has = [&](const QuadPiece& p, std::uint32_t i, std::uint32_t j) {
+    return places.contains({p.level, i, j});
+  };
+  // Along which side, if it is one; at a corner the side on which there are others.
+  const auto along = [&](const QuadPiece& p) {
+    const bool u =
+        (p.sides() & 5u) != 0 && (p.corners() == 0 || has(p, p.i + 1, p.j) || has(p, p.i - 1, p.j));
+    const bool v =
+        (p.sides() & 10u) != 0 && (p.corners() == 0 || has(p, p.i, p.j + 1) || has(p, p.i, p.j - 1));
+    return std::pair(u == v, u);
+  };
+  const auto key = [&](const QuadPiece& p) {
+    const auto [alone, u] = along(p);
+    return std::tuple(alone, u, p.level, u ? p.j : p.i, u ? p.i : p.j);
+  };
+  std::sort(tips.begin(), tips.end(),
+            [&](const Draft& a, const Draft& b) { return key(a.piece) < key(b.piece); });
+  for (std::size_t begin = 0; begin < tips.size();) {
+    const QuadPiece& p = tips[begin].piece;
+    const std::pair side = along(p);
+    const bool u = side.second;
+    std::size_t run = 1;
+    const auto follows = [&](const QuadPiece& q) {
+      return along(q) == side && q.level == p.level &&
+             (u ? q.j == p.j && q.i == p.i + run : q.i == p.i && q.j == p.j + run);
+    };
+    while (!side.first && begin + run < tips.size() && follows(tips[begin + run].piece)) ++run;
+    for (std::size_t done = 0; done < run;) {
+      const std::size_t at = (u ? p.i : p.j) + done;
+      std::size_t count = 1;
+      while (at % (2 * count) == 0 && done + 2 * count <= run) count *= 2;
+      fit_block({tips.data() + begin + done, count}, u);
+      done += count;
+    }
+    begin += run;
+  }
+}
+
+void QuadPieces::fit_block(std::span<Draft> tips, bool along_u) {
+  const std::size_t count = tips.size();
+  Draft block{tips[0].piece, {}};
+  (along_u ? block.piece.columns : block.piece.rows) = static_cast<std::uint32_t>(count);
+  const double share = 1 / static_cast<double>(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double low = share * static_cast<double>(k), high = share * static_cast<double>(k + 1);
+    block.nets.push_back(
+        {tips[k].nets[0].net, along_u ? ParameterBox{low, high, 0, 1} : ParameterBox{0, 1, low, high}});
+  }
+  block.piece.piece = TipFit(block.nets, block.piece.box(), degree_, evaluator_).bezier();
+  if (count == 1 || is_border_of(block.piece, along_u, 2 * count)) {
+    block.piece.distance = tip_distance(block.nets, block.piece.piece, degree_, 0.5 * error_);
+    if (count == 1 || block.piece.distance <= error_) {
+      drafts_.push_back(std::move(block));
+      return;
+    }
+  }
+  fit_block(tips.subspan(0, count / 2), along_u);
+  fit_block(tips.subspan(count / 2), along_u);
+}
+
+// Is the side of a tip on the quad's border the limit curve, up to rounding? Then all blocks make the same curve of it.
+bool QuadPieces::is_border_of(const QuadPiece& tip, bool along_u, std::size_t samples) {
+  const ParameterBox box = tip.box();
+  const double tolerance = 0x1p-40 * tip.piece.largest;
+  for (const double side : {0.0, 1.0}) {
+    const double across = along_u ? box.v0 + (box.v1 - box.v0) * side : box.u0 + (box.u1 - box.u0) * side;
+    if (across != 0 && across != 1) continue;
+    for (std::size_t k = 1; k < samples; ++k) {
+      const double t = static_cast<double>(k) / static_cast<double>(samples);
+      const double u = along_u ? box.u0 + (box.u1 - box.u0) * t : across,
+                   v = along_u ? across : box.v0 + (box.v1 - box.v0) * t;
+      const Vector3 limit = evaluator_.frame({0, 0, u, v}).point.relative;
+      if (max_abs(value(tip.piece, along_u ? t : side, along_u ? side : t) - limit) > tolerance) return false;
+    }
+  }
+  return true;
+}
+
+// One piece for two, if it is the same polynomial up to rounding.
 std::optional<QuadPieces::Draft> QuadPieces::merged(const Draft& a, const Draft& b, bool along_u) {
   Draft both{a.piece, {}};
   (along_u ? both.piece.columns : both.piece.rows) *= 2;
-  if (!a.piece.tip) {
-    both.piece.piece = joined(a.piece.piece, b.piece.piece, along_u);
-    for (std::size_t k = 0; k < 2; ++k) {
-      const QuadPiece& part = k == 0 ? a.piece : b.piece;
-      const double apart = distance_bound(part.piece, bezier_on(both.piece.piece, half_box(k, along_u)));
-      if (apart > 0x1p-40 * both.piece.piece.largest) return {};
-      both.piece.distance = std::max(both.piece.distance, enlarged(part.distance + apart));
-    }
-    return both;
+  both.piece.piece = joined(a.piece.piece, b.piece.piece, along_u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const QuadPiece& part = k == 0 ? a.piece : b.piece;
+    const double apart = distance_bound(part.piece, bezier_on(both.piece.piece, half_box(k, along_u)));
+    if (apart > 0x1p-40 * both.piece.piece.largest) return {};
+    both.piece.distance = std::max(both.piece.distance, enlarged(part.distance + apart));
   }
-  for (const Draft* part : {&a, &b}) {
-    for (const PartNet& net : part->nets) {
-      const double from = part == &a ? 0 : 0.5;
-      ParameterBox box = net.box;
-      (along_u ? box.u0 : box.v0) = from + 0.5 * (along_u ? box.u0 : box.v0);
-      (along_u ? box.u1 : box.v1) = from + 0.5 * (along_u ? box.u1 : box.v1);
-      both.nets.push_back({net.net, box});
-    }
-  }
-  both.piece.piece = TipFit(both.nets, both.piece.box(), degree_, evaluator_).bezier();
-  if (!same_sides(both.piece.piece, a.piece.piece, b.piece.piece, along_u)) return {};
-  both.piece.distance = tip_distance(both.nets, both.piece.piece, degree_);
-  if (both.piece.distance > std::max({error_, a.piece.distance, b.piece.distance})) return {};
   return both;
 }
 
@@ -361,7 +420,7 @@ void QuadPieces::merge(bool along_u) {
       if (k + 1 < drafts_.size()) {
         const QuadPiece &a = drafts_[k].piece, &b = drafts_[k + 1].piece;
         const std::uint32_t width = along_u ? a.columns : a.rows, begin = along_u ? a.i : a.j;
-        const bool beside = a.level == b.level && a.tip == b.tip && a.columns == b.columns &&
+        const bool beside = a.level == b.level && !a.tip && !b.tip && a.columns == b.columns &&
                             a.rows == b.rows &&
                             (along_u ? a.j == b.j && b.i == a.i + width : a.i == b.i && b.j == a.j + width);
         if (beside && begin % (2 * width) == 0) {

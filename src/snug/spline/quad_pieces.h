@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -59,8 +60,11 @@ class QuadPieces {
 
   void open(ControlNet net, const QuadPiece& place);
   void add_tip(ControlNet net, const QuadPiece& place);
+  void fit_tips();
+  void fit_block(std::span<Draft> tips, bool along_u);
+  [[nodiscard]] bool is_border_of(const QuadPiece& tip, bool along_u, std::size_t samples);
   void merge(bool along_u);
-  [[nodiscard]] std::optional<Draft> merged(const Draft& a, const Draft& b, bool along_u);
+  [[nodiscard]] static std::optional<Draft> merged(const Draft& a, const Draft& b, bool along_u);
 
   QuadDepths depths_;
   double error_;

@@ -10,15 +10,24 @@ namespace {
 
 constexpr std::size_t most = TensorPiece::max_degree;
 
-// One argument of the polar form after the other. A step is a weighted mean of two points where the argument is between the
-// knots: four roundings.
-Vector3 polar(std::size_t degree, const double* knots, std::array<Vector3, most + 1> p,
-              std::span<const double> at) {
+// Of polar form the shares of the second of two points: argument by argument, point by point.
+using Shares = std::array<std::array<double, most>, most>;
+Shares shares_of(std::size_t degree, const double* knots, std::span<const double> at) {
+  Shares shares{};
   for (std::size_t r = 0; r < degree; ++r) {
     for (std::size_t i = 0; i + r < degree; ++i) {
-      const double low = knots[i + r], high = knots[i + degree], share = (at[r] - low) / (high - low);
-      p[i] = (1 - share) * p[i] + share * p[i + 1];
+      const double low = knots[i + r], high = knots[i + degree];
+      shares[r][i] = (at[r] - low) / (high - low);
     }
+  }
+  return shares;
+}
+
+// One argument after the other. A step is a weighted mean of two points where the argument is between the knots: four
+// roundings.
+Vector3 polar(std::size_t degree, const Shares& shares, std::array<Vector3, most + 1> p) {
+  for (std::size_t r = 0; r < degree; ++r) {
+    for (std::size_t i = 0; i + r < degree; ++i) p[i] = (1 - shares[r][i]) * p[i] + shares[r][i] * p[i + 1];
   }
   return p[0];
 }
@@ -26,18 +35,47 @@ Vector3 polar(std::size_t degree, const double* knots, std::array<Vector3, most 
 // Of both directions in a piece.
 constexpr std::size_t polar_roundings(std::size_t degree) { return 8 * degree; }
 
-// From a piece: `knots` and control points of a direction replaced.
+// Control points of a direction replaced by polar values.
 template <class Arguments>
 void change_direction(const TensorPiece& from, bool along_u, const Arguments& arguments, TensorPiece& to) {
-  const std::size_t width = from.width();
-  for (std::size_t line = 0; line < width; ++line) {
-    std::array<Vector3, most + 1> p;
-    for (std::size_t i = 0; i < width; ++i) p[i] = along_u ? from.at(i, line) : from.at(line, i);
-    for (std::size_t i = 0; i < width; ++i) {
-      const Vector3 q = polar(from.degree, along_u ? from.u.data() : from.v.data(), p, arguments(i));
-      (along_u ? to.at(i, line) : to.at(line, i)) = q;
+  const std::size_t width = from.width(), step = along_u ? 1 : width, across = along_u ? width : 1;
+  for (std::size_t i = 0; i < width; ++i) {
+    const Shares shares = shares_of(from.degree, along_u ? from.u.data() : from.v.data(), arguments(i));
+    for (std::size_t line = 0; line < width; ++line) {
+      std::array<Vector3, most + 1> p;
+      for (std::size_t k = 0; k < width; ++k) p[k] = from.points[line * across + k * step];
+      to.points[line * across + i * step] = polar(from.degree, shares, p);
     }
   }
+}
+
+// Bezier points over a half: de Casteljau's means, each rounded once.
+void halve(TensorPiece& bezier, bool along_u, bool second) {
+  const std::size_t d = bezier.degree, width = d + 1, step = along_u ? 1 : width,
+                    across = along_u ? width : 1;
+  for (std::size_t line = 0; line < width; ++line) {
+    std::array<Vector3, most + 1> p;
+    for (std::size_t k = 0; k < width; ++k) p[k] = bezier.points[line * across + k * step];
+    for (std::size_t r = 1; r <= d; ++r) {
+      if (second) {
+        for (std::size_t k = 0; k + r <= d; ++k) p[k] = 0.5 * (p[k] + p[k + 1]);
+      } else {
+        for (std::size_t k = d; k >= r; --k) p[k] = 0.5 * (p[k - 1] + p[k]);
+      }
+    }
+    for (std::size_t k = 0; k < width; ++k) bezier.points[line * across + k * step] = p[k];
+  }
+}
+
+bool is_half(double low, double high) { return (low == 0 && high == 0.5) || (low == 0.5 && high == 1); }
+
+// The part of Bezier points over halves or all of each direction; false for other parts.
+bool take_halves(TensorPiece& bezier, const ParameterBox& box) {
+  const bool all_u = box.u0 == 0 && box.u1 == 1, all_v = box.v0 == 0 && box.v1 == 1;
+  if ((!all_u && !is_half(box.u0, box.u1)) || (!all_v && !is_half(box.v0, box.v1))) return false;
+  if (!all_u) halve(bezier, true, box.u0 > 0);
+  if (!all_v) halve(bezier, false, box.v0 > 0);
+  return true;
 }
 
 }  // namespace
@@ -71,13 +109,14 @@ TensorPiece tensor_piece(const LatticeNet& net, std::size_t degree) {
 }
 
 Vector3 blossom(const TensorPiece& piece, std::span<const double> u, std::span<const double> v) {
+  const Shares along_u = shares_of(piece.degree, piece.u.data(), u);
   std::array<Vector3, most + 1> lines;
   for (std::size_t j = 0; j < piece.width(); ++j) {
     std::array<Vector3, most + 1> line;
     for (std::size_t i = 0; i < piece.width(); ++i) line[i] = piece.at(i, j);
-    lines[j] = polar(piece.degree, piece.u.data(), line, u);
+    lines[j] = polar(piece.degree, along_u, line);
   }
-  return polar(piece.degree, piece.v.data(), lines, v);
+  return polar(piece.degree, shares_of(piece.degree, piece.v.data(), v), lines);
 }
 
 Vector3 value(const TensorPiece& piece, double u, double v) {
@@ -97,16 +136,21 @@ CornerJet corner_jet(const TensorPiece& bezier, std::size_t x, std::size_t y) {
 TensorPiece bezier_on(const TensorPiece& piece, const ParameterBox& box) {
   const std::size_t d = piece.degree;
   TensorPiece half = bezier_piece(d), result = half;
+  const bool bezier = piece.u == half.u && piece.v == half.v;
+  if (bezier && box == ParameterBox{}) return piece;
+  result.points = piece.points;
   half.v = piece.v;
-  std::array<double, most> at{};
-  const auto between = [&](double low, double high) {
-    return [&, low, high](std::size_t i) {
-      for (std::size_t k = 0; k < d; ++k) at[k] = k < d - i ? low : high;
-      return std::span<const double>(at.data(), d);
+  if (!bezier || !take_halves(result, box)) {
+    std::array<double, most> at{};
+    const auto between = [&](double low, double high) {
+      return [&, low, high](std::size_t i) {
+        for (std::size_t k = 0; k < d; ++k) at[k] = k < d - i ? low : high;
+        return std::span<const double>(at.data(), d);
+      };
     };
-  };
-  change_direction(piece, true, between(box.u0, box.u1), half);
-  change_direction(half, false, between(box.v0, box.v1), result);
+    change_direction(piece, true, between(box.u0, box.u1), half);
+    change_direction(half, false, between(box.v0, box.v1), result);
+  }
   take_largest(result);
   result.error =
       enlarged(piece.error + gamma_bound(polar_roundings(d)) * piece.largest) + 64 * underflow_error;

@@ -30,6 +30,7 @@ struct TensorPiece {
 /// A rectangle of parameters.
 struct ParameterBox {
   double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+  friend bool operator==(const ParameterBox&, const ParameterBox&) = default;
 };
 
 /// A regular piece on [0, 1]^2.
