@@ -101,5 +101,7 @@ struct StepOptions {
 /// A part as STEP text (ISO 10303-21): a solid for each closed shell that is no void, a surface model of the others.
 /// Guarantee: coordinates are read back as the same doubles.
 [[nodiscard]] SNUG_API std::string format_step(const Brep& brep, const StepOptions& options = {});
+/// The same to a file, completely or not at all. Returns its bytes. Errors: InputError (unreadable).
+SNUG_API std::size_t write_step(const Brep& brep, const std::string& path, const StepOptions& options = {});
 
 }  // namespace snug

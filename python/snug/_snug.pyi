@@ -160,6 +160,19 @@ class Surface(_Tagged):
         threads: int = 0,
         progress: Progress = None,
     ) -> Hulls: ...
+    def write_step(
+        self,
+        path: Path,
+        error: Length = None,
+        *,
+        max_angle: Optional[float] = None,
+        units: str = "mm",
+        name: Optional[str] = None,
+        protocol: str = "ap242",
+        max_splits: Optional[int] = None,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> Dict[str, Any]: ...
     def envelope(
         self,
         error: Length = None,

@@ -254,7 +254,8 @@ std::unique_ptr<PySurface> surface_of(const py::object& vertices, const py::obje
   return surface;
 }
 
-// A name in the file system's bytes. "-" is a file of that name here, not standard input.
+}  // namespace
+
 std::string path_of(const py::object& path) {
   PyObject* bytes = nullptr;
   if (PyUnicode_FSConverter(path.ptr(), &bytes) == 0) throw py::error_already_set();
@@ -262,6 +263,8 @@ std::string path_of(const py::object& path) {
   std::string name = held;
   return name == "-" ? "./-" : name;
 }
+
+namespace {
 
 // Exceptions of work() about the file get its name.
 template <class Work>
@@ -591,6 +594,7 @@ void add_surface(py::module_& module) {
       "from run to run. Raises ValueError for a patch that is not there.");
   add_point_queries(surface, module);
   add_shapes(surface, module);
+  add_brep(surface);
   add_contacts(surface, module);
 }
 

@@ -60,10 +60,13 @@ void add_errors(py::module_& module);
 void add_surface(py::module_& module);
 void add_pair_queries(py::module_& module);
 void add_point_queries(py::class_<PySurface>& surface, py::module_& module);
+void add_brep(py::class_<PySurface>& surface);
 void add_shapes(py::class_<PySurface>& surface, py::module_& module);
 void add_contacts(py::class_<PySurface>& surface, py::module_& module);
 void add_motions(py::module_& module);
 
+/// A name in the file system's bytes. "-" is a file of that name here, not standard input.
+[[nodiscard]] std::string path_of(const py::object& path);
 /// Raises snug.UndecidedError.
 [[noreturn]] void refuse_undecided(const std::string& message);
 /// Text that may have the name of a file in it, whose bytes need not be UTF-8.

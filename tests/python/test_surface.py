@@ -313,3 +313,19 @@ def test_view(cube, tmp_path):
         snug.view(hit, cube, template=template)
     with pytest.raises(snug.FileError, match="make page"):
         snug.view(cube, template=tmp_path / "none.html")
+
+
+def test_write_step(tmp_path):
+    cube = snug.read(MODELS / "bracket.obj")
+    found = cube.write_step(tmp_path / "part.step", "0.1%", units="inch", name="a part")
+    assert found["complete"] and found["solids"] == 1 and found["sheets"] == 0
+    assert found["error_bound"] <= 0.001 * cube.size and found["gap_bound"] < 1e-12
+    text = (tmp_path / "part.step").read_text()
+    assert len(text) == found["bytes"]
+    assert "MANIFOLD_SOLID_BREP('a part'" in text and "'INCH'" in text
+    flatter = cube.write_step(tmp_path / "part.step", "0.1%", max_angle=0.05)
+    assert flatter["break_angle"] <= 0.05 < found["break_angle"] and flatter["spans"] > found["spans"]
+    for wrong in ({"units": "yard"}, {"protocol": "ap203"}, {"max_angle": 100}):
+        with pytest.raises(ValueError):
+            cube.write_step(tmp_path / "other.step", **wrong)
+    assert not (tmp_path / "other.step").exists()

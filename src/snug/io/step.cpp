@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include <snug/io/step_text.h>
-#include <support/error.h>
+#include <support/atomic_file.h>
 
 namespace snug {
 namespace {
@@ -217,6 +217,14 @@ class StepWriter {
 
 std::string format_step(const Brep& brep, const StepOptions& options) {
   return StepWriter(brep, options).run();
+}
+
+std::size_t write_step(const Brep& brep, const std::string& path, const StepOptions& options) {
+  const std::string text = format_step(brep, options);
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+  return text.size();
 }
 
 }  // namespace snug
