@@ -45,7 +45,7 @@ INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapt
 USERS = ("apps/snug", "python", "web", "examples")
 # Tests of questions, and what they share, ask as users do: no private headers of `query` but in the files that look inside.
 QUESTIONS = ("tests/query", "tests/sound", "tests/testing")
-WHITE_BOX = {"tests/query/hull_problems_test.cpp", "tests/query/local_tessellation_test.cpp", "tests/query/moving_body_test.cpp",
+WHITE_BOX = {"tests/query/hull_problems_test.cpp", "tests/query/local_tessellation_test.cpp", "tests/query/local_tolerances_test.cpp", "tests/query/moving_body_test.cpp",
              "tests/query/pair_queries_test.cpp",
              "tests/query/piece_quadratic_test.cpp", "tests/query/swept_motion_test.cpp", "tests/query/trajectory_test.cpp",
              "tests/query/triangle_complex_test.cpp", "tests/sound/lazy_trees_test.cpp", "tests/sound/schemes_collide_test.cpp",

@@ -66,6 +66,8 @@ void write_summary(Report& report, const Options& options, const Surface& surfac
   if (found.outcome != Outcome::complete &&
       std::none_of(found.problems.begin(), found.problems.end(),
                    [](const HullProblem& p) { return p.fault == HullFault::through_itself; })) {
+    if (!options.inner.empty() && !options.outer.empty() && !found.outer)
+      report.text("no outer hull was made, since the inner one failed; without --inner it is made alone");
     report.text("snug envelope makes one closed mesh around a surface of any sort, within an error too");
   }
 }

@@ -48,7 +48,7 @@ struct HullProblem {
 };
 
 struct Hulls {
-  std::optional<Hull> inner, outer;
+  std::optional<Hull> inner, outer;     ///< no outer one if the inner one was asked for, too, and failed
   Outcome outcome = Outcome::complete;  ///< do all guarantees of hull() hold? Else they may not
   std::vector<HullProblem> problems;    ///< unless `complete`, some of the failures
   bool closed = false;                  ///< does the surface bound a solid?

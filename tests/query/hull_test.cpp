@@ -324,6 +324,47 @@ TEST(hulls, of_a_thin_plate_are_inside_and_outside_of_it) {
   testing::expect_sandwich(plate, Rules{}, found, tolerance, 5, "plate", counts);
 }
 
+// A gear whose caps are fans around one vertex: only beside that triangles are narrow and must be small.
+TEST(hulls, are_refined_where_they_fail_alone) {
+  constexpr std::uint32_t n = 44;
+  TaggedMesh gear;
+  for (const double z : {0.0, 0.3}) {
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const double angle = 2 * std::numbers::pi * k / n, r = k % 4 < 2 ? 1.25 : 1;
+      gear.points.push_back({r * std::cos(angle), r * std::sin(angle), z});
+    }
+  }
+  for (std::uint32_t k = 1; k + 1 < n; ++k) {
+    gear.polygons.push_back({0, k + 1, k});
+    gear.polygons.push_back({n, n + k, n + k + 1});
+  }
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t next = (k + 1) % n;
+    gear.polygons.push_back({k, next, n + next});
+    gear.polygons.push_back({k, n + next, n + k});
+  }
+  const Model model(gear, loop);
+  const double tolerance = 0.01 * model.surface.size();
+  const Hulls found = model.hulls(HullOptions{.error = tolerance, .outer = false});
+  ASSERT_EQ(found.outcome, Outcome::complete);
+  EXPECT_LT(found.inner->triangles.size(), 25'000u);
+}
+
+// Halves of a torus that are not joined touch along their borders, which no tolerance mends.
+TEST(hulls, that_touch_are_given_up_soon) {
+  TaggedMesh halves = torus(8, 5);
+  const auto count = static_cast<std::uint32_t>(halves.points.size());
+  for (std::uint32_t v = 0; v < count; ++v) halves.points.push_back(oracle::Point(halves.points[v]));
+  for (std::size_t f = halves.polygons.size() / 2; f < halves.polygons.size(); ++f) {
+    for (std::uint32_t& v : halves.polygons[f]) v += count;
+  }
+  const Model model(halves);
+  const Hulls found = model.hulls(0.01 * model.surface.size());
+  ASSERT_NE(found.outcome, Outcome::complete);
+  EXPECT_FALSE(found.outer) << "nobody can use the other one";
+  EXPECT_LT(found.inner->triangles.size(), 8'000u);
+}
+
 TEST(hulls, are_not_verified_where_vertices_coincide) {
   TaggedMesh mesh = meshes::cube();
   mesh.points[7] = mesh.points[6];

@@ -19,7 +19,7 @@ TEST(local_tessellation, holds_the_error_of_every_triangle_where_tolerances_diff
   constexpr std::uint32_t n = 6, middle = 3;
   std::mt19937_64 random(1);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
-  std::size_t triangles = 0, beyond = 0;
+  std::size_t triangles = 0, beyond = 0, smaller = 0;
   for (std::size_t trial = 0; trial < testing::fewer(16); ++trial) {
     const bool loop = trial % 2 == 1;
     ControlMesh mesh;
@@ -52,12 +52,22 @@ TEST(local_tessellation, holds_the_error_of_every_triangle_where_tolerances_diff
     for (int round = 0; round < 6; ++round) {
       std::vector<double> tolerances(surface.owner_count());
       for (double& tolerance : tolerances) tolerance = 0.1 * std::pow(10, -1.5 * std::fabs(unit()));
+      LocalTolerances local_tolerances(surface, tolerances);
+      // In half of the rounds smaller ones around some places, by pieces of several sizes.
+      for (std::size_t k = 0; k < (round % 2 == 0 ? 0u : 12u); ++k) {
+        const PatchId patch(random() % surface.patch_count());
+        if (!surface.has_patch(patch)) continue;
+        const double size = std::ldexp(1.0, -static_cast<int>(random() % 5)),
+                     u = size * std::floor(0.5 / size);
+        local_tolerances.mark({patch, {{{u, 0}, {u + size, 0}, {u, size}}}}, 1e-3, 1);
+        local_tolerances.refine();
+      }
       TessellateOptions options;
       options.corners = true;
       // Every third time the budget ends it: errors beyond the tolerances are as true.
       const bool ended = round % 3 == 2;
       const LocalTessellation local =
-          tessellate(surface, tolerances, options, {.max_splits = ended ? 100u : 1'000'000u});
+          tessellate(surface, local_tolerances, options, {.max_splits = ended ? 100u : 1'000'000u});
       const Tessellation& t = local.mesh;
       const std::vector<double>& errors = local.errors;
       EXPECT_EQ(t.outcome, ended ? Outcome::budget_spent : Outcome::complete);
@@ -65,7 +75,12 @@ TEST(local_tessellation, holds_the_error_of_every_triangle_where_tolerances_diff
       beyond += static_cast<std::size_t>(
           std::count_if(errors.begin(), errors.end(), [](double error) { return error > 0.1; }));
       for (std::size_t i = 0; i < t.triangles.size(); ++i) {
-        EXPECT_LE(errors[i], ended ? 10 : tolerances[t.owners[i]] * (1 + 1e-12));
+        const double allowed = local_tolerances.of(local.parts[i]);
+        EXPECT_LE(allowed, tolerances[t.owners[i]]);
+        smaller += allowed < tolerances[t.owners[i]] ? 1 : 0;
+        EXPECT_LE(errors[i], ended ? 10 : allowed * (1 + 1e-12));
+        for (std::size_t k = 0; k < 3; ++k)
+          EXPECT_EQ(place_of(surface, local.parts[i].patch, local.parts[i].at[k]), t.corners[i][k]);
         for (int k = 0; k <= 8; ++k) {
           for (int l = 0; k + l <= 8; ++l) {
             const double w = (8 - k - l) / 8.0, u = k / 8.0, v = l / 8.0;
@@ -85,6 +100,7 @@ TEST(local_tessellation, holds_the_error_of_every_triangle_where_tolerances_diff
   }
   EXPECT_GT(triangles, testing::fewer(5'000));
   EXPECT_GT(beyond, testing::fewer(20));
+  EXPECT_GT(smaller, testing::fewer(500));
 }
 
 }  // namespace

@@ -202,6 +202,38 @@ TEST(self_contact, is_what_cutting_in_rational_arithmetic_finds) {
 }
 
 // Where parts of products would underflow nothing is said.
+// Pairs of which one is wanted, and no others; a fan around a vertex, flat and folded over, has many pairs with a common vertex.
+TEST(self_contact, of_some_triangles_are_those_of_all_that_name_one) {
+  std::mt19937_64 random(9);
+  std::size_t contacts = 0, left_out = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    Mesh mesh;
+    const auto count = static_cast<std::uint32_t>(4 + random() % 40);
+    // Every other time it goes around more than once.
+    const double turn = (trial % 2 == 0 ? 1.9 : 2.2) * std::numbers::pi;
+    mesh.points.push_back({0, 0, trial % 3 == 0 ? 0 : 0.1});
+    for (std::uint32_t k = 0; k <= count; ++k) {
+      const double angle = turn * k / count;
+      mesh.points.push_back(
+          {std::cos(angle), std::sin(angle), trial % 5 == 0 ? 1e-3 * std::sin(5 * angle) : 0});
+      if (k > 0) mesh.triangles.push_back({0, k, k + 1});
+    }
+    std::vector<std::uint8_t> wanted(mesh.triangles.size());
+    for (auto& mark : wanted) mark = random() % 3 == 0;
+    const auto all = self_contacts(mesh.points, mesh.triangles, 100'000, 1);
+    EXPECT_EQ(all.empty(), trial % 2 == 0) << trial;
+    std::vector<TrianglePair> expected;
+    for (const TrianglePair& pair : all) {
+      if (wanted[pair.a] != 0 || wanted[pair.b] != 0) expected.push_back(pair);
+    }
+    contacts += expected.size();
+    left_out += all.size() - expected.size();
+    EXPECT_EQ(self_contacts(mesh.points, mesh.triangles, 100'000, 2, {}, wanted), expected) << trial;
+  }
+  EXPECT_GT(contacts, 50u);
+  EXPECT_GT(left_out, 20u);
+}
+
 TEST(self_contact, of_coordinates_too_small_for_exact_signs_is_unknown) {
   const std::vector<Point3> points{{0, 0, 0},     {1, 0, 0}, {0, 1, 0}, {1, 1, 1e-200},
                                    {0.1, 0.1, 0}, {2, 2, 2}, {2, 1, 2}};

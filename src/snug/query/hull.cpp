@@ -2,14 +2,15 @@
 #include <snug/search/surface_data.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <set>
 #include <span>
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <snug/contacts.h>
@@ -18,6 +19,7 @@
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
+#include <snug/query/local_tolerances.h>
 #include <snug/query/pair_queries.h>
 #include <snug/query/self.h>
 #include <snug/query/tessellate.h>
@@ -61,7 +63,13 @@ constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
 // And how far Bezier points of its parts may stick out of them.
 constexpr double flat_share = 0x1p-5;
 constexpr std::size_t max_problems = 100, max_contacts = 1'000'000;
-constexpr int max_rounds = 24;
+constexpr int max_rounds = 40;
+// Rounds in which facets with the least tolerance fail before a hull is given up, and the share of the error of those beside a place
+// where the surface touches itself.
+constexpr int max_rounds_at_least = 3;
+constexpr double touching_share = 0x1p-5;
+// How much larger than that of a facet which fails a tolerance beside it may be.
+constexpr double max_growth = 2;
 // After which it is asked whether the surface meets itself, if one hull is wanted; of both the first to fail asks at once.
 constexpr int rounds_alone = 4;
 // Most quadratics that facets are kept off: of the budget, and beside a few of them.
@@ -72,6 +80,8 @@ constexpr std::uint64_t splits_a_triangle = 16, splits_beside = 1'000'000;
 constexpr std::uint64_t splits_kept_a_triangle = 2, splits_kept_beside = 50'000;
 // To show that a surface without hulls at first meets itself, pairs of pieces: a second or two.
 constexpr std::uint64_t tests_a_patch = 4, tests_beside = 100'000;
+// Down to which share of the error tolerances are made smaller for whole owners.
+constexpr double whole_share = 0x1p-4;
 // Of the angle between sheets that go through each other.
 constexpr double least_sine = 0x1p-10;
 
@@ -136,36 +146,6 @@ std::uint64_t max_pieces(const LimitSurface& surface, const Run& run) {
   return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
 }
 
-// Tolerances of owners' triangles, made smaller where something is wrong.
-class Tolerances {
- public:
-  Tolerances(std::size_t owners, double error) : error_(error), of_owners_(owners, first_share * error) {}
-
-  [[nodiscard]] double operator[](std::uint32_t owner) const { return of_owners_[owner]; }
-  [[nodiscard]] std::span<const double> of_owners() const { return of_owners_; }
-  void begin_round() { wrong_.assign(of_owners_.size(), 0); }
-  // This one is to be made smaller, down to a share of the error.
-  void mark(std::uint32_t owner, double least) {
-    if (wrong_[owner] == 0 || least < wrong_[owner]) wrong_[owner] = least;
-  }
-  [[nodiscard]] bool marked(std::uint32_t owner) const { return wrong_[owner] != 0; }
-  // Halves what is marked; the least of these, or infinite if all are as small as they get.
-  [[nodiscard]] double refine() {
-    double least = INFINITY;
-    for (std::size_t owner = 0; owner < of_owners_.size(); ++owner) {
-      if (wrong_[owner] == 0 || of_owners_[owner] <= wrong_[owner] * error_) continue;
-      of_owners_[owner] /= 2;
-      least = std::min(least, of_owners_[owner]);
-    }
-    return least;
-  }
-
- private:
-  double error_;
-  std::vector<double> of_owners_;
-  std::vector<double> wrong_;  // where something is: the least share
-};
-
 // The quadratics that facets are kept off.
 struct NearPieces {
   PieceSet& first;  // for both sides, once one of them has triangles enough to be kept off them
@@ -214,28 +194,84 @@ class TrianglesAround {
   std::vector<std::uint32_t> begins_, triangles_;
 };
 
+struct SurfacePlace {
+  Point3 point;
+  std::uint32_t owner;
+};
+
 // Do the two sheets lie across each other there? Where they only touch there may be a hull on one side.
 bool goes_through(const Surface& surface, const SelfContactPair& pair) {
   const auto a = normal_at(surface, *pair.points[0].at), b = normal_at(surface, *pair.points[1].at);
   return !pair.touching && a && b && length(cross(a->direction, b->direction)) > least_sine;
 }
 
-// The places where a surface is proved to go through itself.
-std::vector<HullProblem> contacts_of(const Surface& surface, const LimitSurface& limit, bool inner,
-                                     const Run& run) {
-  const WorkMonitor monitor = stop_only(run);
-  const SelfContact found =
-      contact_far_apart(surface, {.threads = run.threads,
-                                  .monitor = &monitor,
-                                  .max_splits = tests_beside + tests_a_patch * limit.patch_count()});
-  std::vector<HullProblem> problems;
-  if (found.verdict != SelfVerdict::intersecting) return problems;
-  for (const SelfContactPair& pair : found.pairs) {
-    if (!goes_through(surface, pair)) continue;
-    problems.push_back({HullFault::through_itself, inner, pair.points[0].point, pair.points[0].at->owner});
+// Where a surface is proved to meet itself, found once it is asked for.
+class OwnContacts {
+ public:
+  OwnContacts(const Surface& surface, const LimitSurface& limit, const Run& run)
+      : surface_(surface), limit_(limit), run_(run) {}
+
+  // The owners and places where it goes through itself.
+  [[nodiscard]] const std::vector<SurfacePlace>& through() {
+    find();
+    return through_;
   }
-  return problems;
-}
+  // Does it touch itself so near to a point? Then no hull gets between its sheets.
+  [[nodiscard]] bool touches_near(const Point3& p, double reach) {
+    find();
+    return std::any_of(touching_.begin(), touching_.end(),
+                       [&](const Point3& touching) { return distance(touching, p) <= reach; });
+  }
+
+ private:
+  void find() {
+    if (std::exchange(found_, true)) return;
+    const WorkMonitor monitor = stop_only(run_);
+    const SelfContact found =
+        contact_far_apart(surface_, {.threads = run_.threads,
+                                     .monitor = &monitor,
+                                     .max_splits = tests_beside + tests_a_patch * limit_.patch_count()});
+    if (found.verdict != SelfVerdict::intersecting) return;
+    for (const SelfContactPair& pair : found.pairs) {
+      if (goes_through(surface_, pair)) {
+        through_.push_back({pair.points[0].point, pair.points[0].at->owner});
+      } else {
+        touching_.push_back(pair.points[0].point);
+      }
+    }
+  }
+
+  const Surface& surface_;
+  const LimitSurface& limit_;
+  const Run& run_;
+  bool found_ = false;
+  std::vector<SurfacePlace> through_;
+  std::vector<Point3> touching_;
+};
+
+// Facets of earlier rounds that were found off the surface, and each two of them off each other: as long as their corners stay
+// where they are they need not be compared again.
+class KnownFacets {
+ public:
+  [[nodiscard]] bool contains(const Triangle& facet) const { return known_.contains(facet); }
+  void clear() { known_.clear(); }
+  void add(const Triangle& facet) { known_.insert(facet); }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Triangle& facet) const {
+      std::uint64_t hash = 0;
+      for (const Point3& p : facet) {
+        for (const double x : {p.x, p.y, p.z}) {
+          hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+          hash ^= hash >> 29;
+        }
+      }
+      return hash;
+    }
+  };
+  std::unordered_set<Triangle, Hash> known_;
+};
 
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
@@ -250,29 +286,32 @@ class OneHull {
              .monitor = &monitor_,
              .max_splits = run.max_splits.value_or(default_splits::hull)},
         scale_(surface.scale()),
-        tolerances_(surface.owner_count(), *options.error),
+        tolerances_(surface, std::vector<double>(surface.owner_count(), first_share * *options.error)),
         pieces_{pieces} {}
 
-  // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left; those of `hopeless`
-  // alone if that names some, which is asked once something is wrong.
-  std::vector<HullProblem> run(const std::function<std::vector<HullProblem>(int round)>& hopeless) {
+  // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left; where the surface goes
+  // through itself, which is asked after some rounds, only that.
+  std::vector<HullProblem> run(OwnContacts& contacts, int asked_from) {
     for (int round = 0;; ++round) {
-      LocalTessellation made = tessellate(surface_, tolerances_.of_owners(), {.normals = false}, run_);
-      mesh_ = std::move(made.mesh);
+      LocalTessellation made = tessellate(surface_, tolerances_, {.normals = false}, run_);
+      begin_round(made);
       if (round == 0) {
         faces_.border = has_border(mesh_);
         faces_.inward = !faces_.border && is_inward(mesh_, scale_);
       }
-      problems_.clear();
-      tolerances_.begin_round();
       move_vertices(made.errors);
       if (!whole_mesh() && !problems_.empty()) break;
       const double error = quadratic_share * first_share * scale_.apply(*options_.error);
       if (!pieces_.begin_round(surface_, error, run_) && !blame_budget()) break;
       if (!facets_.any_turned) keep_off();
       if (problems_.empty()) break;
-      if (std::vector<HullProblem> found = hopeless(round); !found.empty()) return found;
-      if (round + 1 == max_rounds || !whole_mesh() || !refine()) break;
+      if (round >= asked_from && !contacts.through().empty()) {
+        problems_.clear();
+        for (const SurfacePlace& place : contacts.through())
+          problems_.push_back({HullFault::through_itself, inner_, place.point, place.owner});
+        break;
+      }
+      if (round + 1 == max_rounds || !whole_mesh() || is_hopeless(contacts) || !refine()) break;
     }
     return std::move(problems_);
   }
@@ -288,6 +327,32 @@ class OneHull {
   }
 
  private:
+  void begin_round(LocalTessellation& made) {
+    mesh_ = std::move(made.mesh);
+    parts_ = std::move(made.parts);
+    around_.emplace(mesh_);
+    allowed_.resize(parts_.size());
+    parallel_for(parts_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) allowed_[t] = tolerances_.of(parts_[t]);
+    });
+    problems_.clear();
+    failed_.clear();
+    wrong_owners_.assign(surface_.owner_count(), 0);
+  }
+
+  // Did a facet fail whose tolerance was small before, for several rounds or beside a place where the surface touches itself?
+  [[nodiscard]] bool is_hopeless(OwnContacts& contacts) {
+    for (std::size_t i = 0; i < problems_.size(); ++i) {
+      if (problems_[i].fault == HullFault::no_position) continue;
+      const std::uint32_t t = failed_[i];
+      if (tolerances_.times_at_least(parts_[t]) >= max_rounds_at_least) return true;
+      if (allowed_[t] <= touching_share * *options_.error &&
+          contacts.touches_near(problems_[i].place, *options_.error))
+        return true;
+    }
+    return false;
+  }
+
   // With a problem; returns false.
   bool blame_budget() {
     blame(HullFault::too_few_triangles, 0, mesh_.positions[mesh_.triangles[0][0]]);
@@ -310,7 +375,20 @@ class OneHull {
   }
   void blame(HullFault fault, std::size_t t, const Point3& place) {
     problems_.push_back({fault, inner_, place, mesh_.owners[t]});
-    tolerances_.mark(mesh_.owners[t], fault == HullFault::no_position ? min_share : min_share_apart);
+    failed_.push_back(static_cast<std::uint32_t>(t));
+    wrong_owners_[mesh_.owners[t]] = 1;
+    const double least = fault == HullFault::no_position ? min_share : min_share_apart;
+    mark(parts_[t], least);
+    // What is much coarser beside it moves the vertices of both farther than what is fine has room for.
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      for (const std::uint32_t s : (*around_)[v]) {
+        if (allowed_[s] > max_growth * allowed_[t]) mark(parts_[s], least);
+      }
+    }
+  }
+  // To be made finer, down to a share of the error.
+  void mark(const PatchPart& part, double least) {
+    tolerances_.mark(part, least * *options_.error, whole_share * *options_.error);
   }
 
   [[nodiscard]] QuadraticTriangle facet(std::size_t t) const {
@@ -368,7 +446,7 @@ class OneHull {
     return along * std::sqrt(square) <= longest_detour * largest ? along * facing : (largest / square) * z;
   }
   void move_vertices(std::span<const double> errors) {
-    const TrianglesAround around(mesh_);
+    const TrianglesAround& around = *around_;
     const double sign = inner_ != faces_.inward ? -1 : 1, float_loss = this->float_loss();
     std::vector<Vector3> areas(mesh_.triangles.size()), normals(areas.size());
     std::vector<double> offsets(areas.size());
@@ -377,7 +455,7 @@ class OneHull {
         const Triangle triangle = scaled(mesh_.positions, mesh_.triangles[t]);
         areas[t] = sign * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
         normals[t] = sign * unit_normal(triangle);
-        offsets[t] = errors[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss;
+        offsets[t] = errors[t] + clearance * allowed_[t] + float_loss;
       }
     });
     facets_ = {.positions = mesh_.positions};
@@ -404,7 +482,7 @@ class OneHull {
       facets_.gap = std::max(facets_.gap, gap);
       if (gap <= *options_.error) {
         // Corners that moved sideways past each other: most of these facets meet others, and finding them is cheap.
-        if (tolerances_[mesh_.owners[t]] > turned_share * *options_.error &&
+        if (allowed_[t] > turned_share * *options_.error &&
             sign * dot(unit_normal(scaled(facets_.positions, names)), normals[t]) < 0) {
           blame(HullFault::meets_itself, t, mesh_.positions[names[0]]);
           facets_.any_turned = true;
@@ -422,33 +500,43 @@ class OneHull {
   // Facets that may meet the surface, or each other.
   void keep_off() {
     const std::size_t count = mesh_.triangles.size();
-    std::vector<std::uint8_t> meets(count);
+    std::vector<std::uint8_t> meets(count), changed(count), clear(count);
     parallel_for(count, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (t % 256 == 0) monitor_.checkpoint();
+        changed[t] = !known_.contains(scaled(facets_.positions, mesh_.triangles[t]));
         // There is no position, or none that is near enough.
-        if (tolerances_.marked(mesh_.owners[t])) continue;
-        const double flat = flat_share * scale_.apply(tolerances_[mesh_.owners[t]]);
+        if (wrong_owners_[mesh_.owners[t]] != 0) continue;
+        clear[t] = 1;
+        if (changed[t] == 0) continue;
+        const double flat = flat_share * scale_.apply(allowed_[t]);
         meets[t] = may_meet(pieces_.all, facet(t), flat);
       }
     });
     for (std::size_t t = 0; t < count; ++t) {
       if (meets[t] == 0) continue;
+      clear[t] = 0;
       blame(HullFault::meets_surface, t, mesh_.positions[mesh_.triangles[t][0]]);
       // It may meet another sheet, whose own facets are as near.
       mark_near(pieces_.all, facet(t), 0, pieces_.marks);
     }
     for (std::size_t p = 0; p < pieces_.all.size(); ++p) {
       if (pieces_.marks[p] == 0) continue;
-      tolerances_.mark(surface_.place(pieces_.all.name(p).patch).owner, min_share_apart);
+      const auto& [patch, path] = pieces_.all.name(p);
+      mark({patch, {to_face(path, {0, 0}), to_face(path, {1, 0}), to_face(path, {0, 1})}}, min_share_apart);
     }
     std::vector<Point3> points;
     points.reserve(facets_.positions.size());
     for (const Point3& p : facets_.positions) points.push_back(scale_.apply(p));
     for (const auto& [a, b, contact] :
-         self_contacts(points, mesh_.triangles, max_contacts, run_.threads, monitor_)) {
+         self_contacts(points, mesh_.triangles, max_contacts, run_.threads, monitor_, changed)) {
       blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
+      clear[a] = clear[b] = 0;
+    }
+    known_.clear();
+    for (std::size_t t = 0; t < count; ++t) {
+      if (clear[t] != 0) known_.add(scaled(facets_.positions, mesh_.triangles[t]));
     }
   }
 
@@ -465,12 +553,18 @@ class OneHull {
   WorkMonitor monitor_;
   Run run_;  // with this monitor
   PowerOfTwo scale_;
-  Tolerances tolerances_;
+  LocalTolerances tolerances_;
   Tessellation mesh_;
+  std::vector<PatchPart> parts_;           // of its triangles
+  std::vector<double> allowed_;            // their tolerances
+  std::optional<TrianglesAround> around_;  // of the mesh
   NearPieces pieces_;
   std::vector<HullProblem> problems_;
+  std::vector<std::uint32_t> failed_;  // the triangle of each
+  std::vector<std::uint8_t> wrong_owners_;
   Faces faces_;
   Facets facets_;
+  KnownFacets known_;
 };
 
 // A hull as a surface of its own.
@@ -665,19 +759,17 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
   Hulls result;
   // Two balls that go through each other a little have an inner hull, and no outer one; turned inside out the other way round.
   const int asked_from = options.inner && options.outer ? 0 : rounds_alone;
-  bool may_meet_itself = true;
+  OwnContacts contacts(handle, surface, run);
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
     OneHull side(surface, options, inner, *pieces, run);
-    const std::vector<HullProblem> problems = side.run([&](int round) {
-      if (round < asked_from || !std::exchange(may_meet_itself, false)) return std::vector<HullProblem>();
-      return contacts_of(handle, surface, inner, run);
-    });
+    const std::vector<HullProblem> problems = side.run(contacts, asked_from);
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
     result.closed = !side.has_border_edges();
     (inner ? result.inner : result.outer) = side.take();
     monitor_of(run).report(inner ? 0.3 : 0.6);
-    if (!problems.empty() && problems[0].fault == HullFault::through_itself) break;
+    // Nothing is proved of the other one then, and one that fails takes most of the time.
+    if (!problems.empty()) break;
   }
   pieces.reset();
   if (result.problems.empty()) result.problems = problems_of(handle, result, options, run);

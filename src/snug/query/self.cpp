@@ -146,7 +146,7 @@ class SelfSearch {
       add(flat_folds(model_), Found::What::crossing);
       if (contacts_.empty()) look_for_contact(pieces, facets.faces, stars);
       // No pieces show these, however small.
-      if (stars && !unknown_.empty() && contacts_.empty())
+      if ((!stars || !unknown_.empty()) && contacts_.empty())
         add(coincident_vertices(surface_), Found::What::touching);
     }
     if (options_.within && contacts_.empty()) look_for_near();

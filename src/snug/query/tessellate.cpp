@@ -94,8 +94,8 @@ PiecePath path_of(const FacetPlaces& at) {
 // The limits of a run, in scaled units.
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY, max_thickness = INFINITY;
-  std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
-  double min_cosine = -2;          // of normals; -2 for none
+  const LocalTolerances* local = nullptr;  // instead of that one
+  double min_cosine = -2;                  // of normals; -2 for none
   Point3 eye;
   double slope = INFINITY;    // of a triangle's tolerance over its distance from the eye
   double shortest_turn = 0;   // triangles without a longer side are not split for their normals
@@ -172,8 +172,8 @@ class MeshRefinement {
   [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
   // Upper bound over all triangles, in mesh units.
   [[nodiscard]] double error_bound() const;
-  // Also the errors of triangles, in mesh units, if asked for. Nothing may be asked afterwards.
-  [[nodiscard]] Tessellation take_result(std::vector<double>* errors = nullptr);
+  // Also what is known of each triangle, if asked for. Nothing may be asked afterwards.
+  [[nodiscard]] Tessellation take_result(LocalTessellation* local = nullptr);
 
  private:
   using Cut = TriangleComplex::Cut;
@@ -204,8 +204,12 @@ class MeshRefinement {
   [[nodiscard]] FacetPlaces places(Index t) const;
   [[nodiscard]] double tolerance(Index t) const {
     if (limits_.slope < INFINITY) return std::min(limits_.tolerance, seen_tolerance(t));
-    if (limits_.of_owner.empty()) return limits_.tolerance;
-    return limits_.of_owner[surface_.place(PatchId(facets_[t].patch)).owner];
+    if (limits_.local == nullptr) return limits_.tolerance;
+    return std::max(surface_.scale().apply(limits_.local->of(part(t))), min_tolerance);
+  }
+  [[nodiscard]] PatchPart part(Index t) const {
+    const FacetPlaces at = places(t);
+    return {PatchId(facets_[t].patch), {at[0], at[1], at[2]}};
   }
   [[nodiscard]] PowerOfTwo back() const { return surface_.scale().inverse(); }
   [[nodiscard]] Point3 scaled(Index v) const { return surface_.scale().apply(written_[v]); }
@@ -627,7 +631,7 @@ void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>&
 }
 
 // Memory that is needed no more is freed before the result is made: both are largest now.
-Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
+Tessellation MeshRefinement::take_result(LocalTessellation* local) {
   Tessellation result;
   result.error_bound = error_bound();
   result.position_error = unscaled_up(vertex_error_, back());
@@ -641,7 +645,10 @@ Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
   std::vector<Index> patch_of(complex_.site_count());
   result.triangles.resize(count);
   result.owners.resize(count);
-  if (errors != nullptr) errors->resize(count);
+  if (local != nullptr) {
+    local->errors.resize(count);
+    local->parts.resize(count);
+  }
   if (options_.corners) result.corners.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Facet& facet = facets_[t];
@@ -649,7 +656,10 @@ Tessellation MeshRefinement::take_result(std::vector<double>* errors) {
     const std::size_t place = begins[patch.value()]++;
     result.triangles[place] = sites[t];
     result.owners[place] = surface_.place(patch).owner;
-    if (errors != nullptr) (*errors)[place] = unscaled_up(facet.error, back());
+    if (local != nullptr) {
+      local->errors[place] = unscaled_up(facet.error, back());
+      local->parts[place] = {patch, {at_[sites[t][0]], at_[sites[t][1]], at_[sites[t][2]]}};
+    }
     for (std::size_t k = 0; k < 3; ++k) {
       patch_of[sites[t][k]] = patch.value();
       if (options_.corners) result.corners[place][k] = place_of(surface_, patch, at_[sites[t][k]]);
@@ -839,19 +849,16 @@ Tessellation tessellate(const Surface& handle, const TessellateOptions& options,
   return result;
 }
 
-LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
+LocalTessellation tessellate(const LimitSurface& surface, const LocalTolerances& tolerances,
                              const TessellateOptions& options, const Run& run) {
   Limits limits;
-  limits.of_owner.reserve(tolerances.size());
-  for (const double tolerance : tolerances) {
-    limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), min_tolerance));
-  }
-  limits.tolerance = *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
+  limits.local = &tolerances;
+  limits.tolerance = std::max(surface.scale().apply(tolerances.least()), min_tolerance);
   MeshRefinement refinement(surface, options, limits, run);
   const bool reached = refinement.run(run.max_splits.value_or(default_splits::tessellate));
   if (!reached) refinement.find_errors();
   LocalTessellation result;
-  result.mesh = refinement.take_result(&result.errors);
+  result.mesh = refinement.take_result(&result);
   result.mesh.outcome = outcome_of(reached, true);
   return result;
 }

@@ -1,20 +1,22 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
+#include <snug/query/local_tolerances.h>
 #include <snug/surface/limit_surface.h>
 #include <snug/tessellate.h>
 
 namespace snug {
 
-/// Of a refinement with tolerances of its own for each owner, in mesh units: also a proved error for each triangle.
+/// A refinement with tolerances that differ from place to place, in mesh units; for each triangle its part of the surface and a
+/// proved error, at most the tolerance of that part.
 struct LocalTessellation {
   Tessellation mesh;
+  std::vector<PatchPart> parts;
   std::vector<double> errors;
 };
-/// Requires:  finite, positive tolerances, one an owner; none of `options` counts.
-[[nodiscard]] LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
+/// Requires:  none of `options` counts.
+[[nodiscard]] LocalTessellation tessellate(const LimitSurface& surface, const LocalTolerances& tolerances,
                                            const TessellateOptions& options, const Run& run = {});
 
 }  // namespace snug

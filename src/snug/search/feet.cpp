@@ -403,14 +403,17 @@ bool may_meet(const QuadraticTriangle& part, const Ball& ball, const std::array<
 
 }  // namespace
 
+Obb slim_box(const QuadraticTriangle& q) {
+  const Vector3 along = longest_edge(q.corners), across = normalized(cross(unit_normal(q.corners), along));
+  return fit_box(orthonormal_axes(along, across), [&](const Vector3& axis) { return extent_of(q, axis); });
+}
+
 bool may_meet(const PieceSet& set, const QuadraticTriangle& part, double flat) {
   const Ball ball = ball_of(part);
   // Across the plane and, in it, across the longest edge, where most of what is in the ball around a narrow part lies.
-  const Vector3 normal = unit_normal(part.corners), along = longest_edge(part.corners);
-  const std::array<Vector3, 2> across{normal, normalized(cross(normal, along))};
-  const Obb box =
-      fit_box(orthonormal_axes(along, across[1]), [&](const Vector3& axis) { return extent_of(part, axis); });
-  return set.visit_near(box, [&](std::uint32_t piece) {
+  const Vector3 normal = unit_normal(part.corners);
+  const std::array<Vector3, 2> across{normal, normalized(cross(normal, longest_edge(part.corners)))};
+  return set.visit_near(slim_box(part), [&](std::uint32_t piece) {
     return may_meet(part, ball, across, set[piece], std::max(flat, 4 * distance_rounding));
   });
 }

@@ -54,6 +54,9 @@ struct QuadraticFoot {
 ///            take too many splits.
 [[nodiscard]] double certain_distance(const PieceSet& set, const Point3& p, double gap, QuadraticFoot& foot);
 
+/// A box around its set with an axis along the longest edge of its corners: slim around a narrow one.
+[[nodiscard]] Obb slim_box(const QuadraticTriangle& quadratic);
+
 /// May the set of `part` meet that of a piece? False is proved. Pieces are split
 /// until they are as small as the part and their Bezier points nearly as flat as `flat`.
 [[nodiscard]] bool may_meet(const PieceSet& set, const QuadraticTriangle& part, double flat = INFINITY);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include <snug/geometry/exact_sign.h>
@@ -170,6 +171,25 @@ class ExactPair {
   Projection plane_;  // that both are in
 };
 
+// Is there a plane through a common vertex with the rest of both triangles on different sides, certainly? Most of a fan's triangles
+// are told apart so.
+bool parted_at(const Corners3& a, const Corners3& b, const std::array<std::size_t, 2>& common) {
+  const Point3& v = *a[common[0]];
+  std::array<Vector3, 2> of_a, of_b;
+  Vector3 across;
+  for (std::size_t k = 0; k < 2; ++k) {
+    of_a[k] = *a[(common[0] + 1 + k) % 3] - v;
+    of_b[k] = *b[(common[1] + 1 + k) % 3] - v;
+    across = across + (normalized(of_a[k]) - normalized(of_b[k]));
+  }
+  const auto certainly_positive = [](const Vector3& w, const Vector3& d) {
+    return dot(w, d) >
+           0x1p-50 * (std::fabs(w.x * d.x) + std::fabs(w.y * d.y) + std::fabs(w.z * d.z)) + 1e-300;
+  };
+  return certainly_positive(across, of_a[0]) && certainly_positive(across, of_a[1]) &&
+         certainly_positive(-across, of_b[0]) && certainly_positive(-across, of_b[1]);
+}
+
 TriangleContact contact_between(std::span<const Point3> points, const Names& a, const Names& b) {
   const Corners3 s{&points[a[0]], &points[a[1]], &points[a[2]]},
       t{&points[b[0]], &points[b[1]], &points[b[2]]};
@@ -193,7 +213,10 @@ TriangleContact contact_between(std::span<const Point3> points, const Names& a, 
     return orientation(v, w, x, plane) == orientation(v, w, y, plane) ? TriangleContact::overlapping
                                                                       : TriangleContact::none;
   }
-  if (common == 1) return ExactPair(s, t).contact(std::array{in_a[0], in_b[0]});
+  if (common == 1) {
+    const std::array<std::size_t, 2> vertex{in_a[0], in_b[0]};
+    return parted_at(s, t, vertex) ? TriangleContact::none : ExactPair(s, t).contact(vertex);
+  }
   return ExactPair(s, t).contact(std::nullopt);
 }
 
@@ -208,8 +231,10 @@ TriangleContact contact_of_one(std::span<const Point3> points, const Names& t) {
 }  // namespace
 
 std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::span<const Names> triangles,
-                                        std::size_t most, int threads, const WorkMonitor& monitor) {
+                                        std::size_t most, int threads, const WorkMonitor& monitor,
+                                        std::span<const std::uint8_t> wanted) {
   if (triangles.empty()) return {};
+  const auto is_wanted = [&](std::size_t i) { return wanted.empty() || wanted[i] != 0; };
   std::vector<QuadraticTriangle> flat;
   std::vector<TriangleContact> alone;
   for (const Names& t : triangles) {
@@ -224,20 +249,25 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
     for (std::size_t b = begin; b < end; ++b) {
       monitor.checkpoint();
       for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
+        if (!is_wanted(i)) continue;
         const auto own = static_cast<std::uint32_t>(i);
         int of_this = 0;
         if (alone[i] != TriangleContact::none) found[b].push_back({own, own, alone[i]});
         if (alone[i] == TriangleContact::collapsed) continue;
         const Slabs slabs(set[i].corners);
-        for_each_near(set, set[i], [&](std::uint32_t other) {
-          if (other <= i || of_this == max_of_one || alone[other] == TriangleContact::collapsed) return;
+        set.visit_near(slim_box(set[i]), [&](std::uint32_t other) {
+          if (of_this == max_of_one) return true;
+          if (other == i || alone[other] == TriangleContact::collapsed) return false;
+          // Of two that are wanted the first one finds the pair.
+          if (other < i && is_wanted(other)) return false;
           const bool known = alone[i] == TriangleContact::none && alone[other] == TriangleContact::none;
           const TriangleContact contact = slabs.apart(set[other].corners) ? TriangleContact::none
                                           : known ? contact_between(points, triangles[i], triangles[other])
                                                   : TriangleContact::unknown;
-          if (contact == TriangleContact::none) return;
-          found[b].push_back({own, other, contact});
+          if (contact == TriangleContact::none) return false;
+          found[b].push_back({std::min(own, other), std::max(own, other), contact});
           ++of_this;
+          return false;
         });
       }
       std::sort(found[b].begin(), found[b].end());
@@ -245,6 +275,7 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
   });
   std::vector<TrianglePair> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  if (!wanted.empty()) std::sort(all.begin(), all.end());
   if (all.size() > most) all.resize(most);
   return all;
 }

@@ -29,15 +29,17 @@ struct TrianglePair {
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
-/// The contacts of a mesh with itself, none left out but pairs of a triangle beyond 16 with later ones: at most `most` of them.
+/// The contacts of a mesh with itself, none left out but pairs of a triangle beyond 16 with others: at most `most` of them. `wanted`, a mark
+/// for each triangle, leaves out pairs of two without one.
 ///
 /// Guarantee: in exact arithmetic. Pairs are in the order of triangles, the same for any number of threads.
 /// Requires:  indices in range; coordinates of at most about 2.
-/// Cost:      some microseconds a triangle.
+/// Cost:      some microseconds a triangle that is wanted, and one for each other.
 /// Source:    derivations/self_contact.md, "Facets".
 [[nodiscard]] std::vector<TrianglePair> self_contacts(std::span<const Point3> points,
                                                       std::span<const std::array<std::uint32_t, 3>> triangles,
                                                       std::size_t most, int threads,
-                                                      const WorkMonitor& monitor = {});
+                                                      const WorkMonitor& monitor = {},
+                                                      std::span<const std::uint8_t> wanted = {});
 
 }  // namespace snug
