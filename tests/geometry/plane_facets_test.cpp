@@ -109,6 +109,21 @@ bool near_one(const BoundedPoint& p, const std::vector<Exact>& corners) {
   });
 }
 
+// The corners of the least element of a facet that a point of it is on.
+std::vector<std::size_t> least_element(const Facet& facet, const Exact& x) {
+  const std::size_t n = facet.exact.size();
+  std::vector<std::size_t> all;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (facet.exact[k] == x) return {k};
+    all.push_back(k);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const Exact &e = facet.exact[k], &f = facet.exact[(k + 1) % n];
+    if (cross(x - e, x - f) == Exact{}) return {std::min(k, (k + 1) % n), std::max(k, (k + 1) % n)};
+  }
+  return all;
+}
+
 // Planes along axes and aslant; upright to each other or at any angle; parallel an ulp apart; polygons on one lattice, so that edges and
 // corners are often shared, contain each other and are equal; scales far from each other; poses that take several doubles.
 TEST(plane_facets, have_in_common_what_rational_arithmetic_says) {
@@ -161,8 +176,6 @@ TEST(plane_facets, have_in_common_what_rational_arithmetic_says) {
       EXPECT_TRUE(truth.empty()) << what;
       ++counts["apart"];
     } else if (found.state == State::touching) {
-      counts["through each other"] +=
-          truth.size() == 2 && found.elements[0].size() == p.size() && found.elements[1].size() == q.size();
       ++counts["touching in " + std::to_string(std::min<std::size_t>(truth.size(), 4)) + " corners"];
       counts["exact"] += std::all_of(found.corners.begin(), found.corners.end(),
                                      [](const BoundedPoint& c) { return c.error == 0; });
@@ -221,14 +234,28 @@ TEST(plane_facets, have_in_common_what_rational_arithmetic_says) {
       ++counts["crossing"];
       ASSERT_EQ(truth.size(), 2u) << what;
       ASSERT_EQ(found.corners.size(), 2u) << what;
-      for (const BoundedPoint& c : found.corners) EXPECT_TRUE(near_one(c, truth)) << what;
+      for (std::size_t e = 0; e < 2; ++e) {
+        EXPECT_LE(found.corners[e].error, 0x1p-50) << what;
+        std::vector<Exact> near;
+        std::copy_if(truth.begin(), truth.end(), std::back_inserter(near),
+                     [&](const Exact& t) { return near_one(found.corners[e], {t}); });
+        ASSERT_FALSE(near.empty()) << what;
+        if (near.size() > 1) continue;  // a short one
+        for (std::size_t s = 0; s < 2; ++s)
+          EXPECT_EQ(found.ends[e][s], least_element(s == 0 ? a : b, near[0])) << what;
+        ++counts["ends in " + std::to_string(std::min<std::size_t>(found.ends[e][0].size(), 3)) + " and " +
+                 std::to_string(std::min<std::size_t>(found.ends[e][1].size(), 3)) + " corners"];
+      }
     }
   }
   for (const auto& [name, number] : counts) std::printf("  %-32s %8zu\n", name.c_str(), number);
   if (testing::fewer(3000) < 3000) return;
   for (const char* name : {"apart", "touching in 1 corners", "touching in 2 corners", "touching in 3 corners",
-                           "touching in 4 corners", "exact", "turns", "crossing", "through each other"})
+                           "touching in 4 corners", "exact", "turns", "crossing"})
     EXPECT_GT(counts[name], 50u) << name;
+  for (const char* name :
+       {"1 and 1", "1 and 2", "1 and 3", "2 and 1", "2 and 2", "2 and 3", "3 and 1", "3 and 2"})
+    EXPECT_GT(counts["ends in " + std::string(name) + " corners"], 2u) << name;
 }
 
 TEST(plane_facets, of_unit_squares_are_exact) {

@@ -8,15 +8,9 @@
 
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
-#include <support/direction.h>
 
 namespace snug {
 namespace {
-
-// Sines of the angle between planes below that are too small for curves (search/piece_cut).
-constexpr double min_crossing_sine = 0x1p-16;
-// Shares of an edge that are too short a distance from it.
-constexpr double min_edge_distance = 0x1p-30;
 
 using Corners = std::uint64_t;  // a bit for each corner of a facet
 constexpr Corners bit(std::size_t k) { return Corners{1} << k; }
@@ -296,19 +290,6 @@ std::vector<std::size_t> whole(const PlaneFacet& facet) {
   return all;
 }
 
-// Does a segment run along an edge of a facet, nearly?
-bool runs_along_edge(const std::vector<BoundedPoint>& segment, const PlaneFacet& facet) {
-  for (std::size_t k = 0; k < facet.size(); ++k) {
-    const Point3& from = facet.corner(k).about;
-    const Vector3 edge = facet.corner(k + 1).about - from;
-    const double near = min_edge_distance * length_sq(edge);
-    if (std::all_of(segment.begin(), segment.end(),
-                    [&](const BoundedPoint& p) { return length(cross(edge, p.position - from)) <= near; }))
-      return true;
-  }
-  return false;
-}
-
 // Two facets that pass each other's planes: each has a segment of the line that these have in common. Along the line, in the direction of
 // normal of a x normal of b, that of a goes from where its border rises to where it falls, that of b the other way round; and an edge of
 // a passes the line before an edge of b, both from below, if its ends and that edge's are positively oriented.
@@ -328,15 +309,17 @@ FacetMeeting meet_in_line(const PlaneFacet& a, const PlaneFacet& b, const Sides&
     result.corners = {of_b.of[q.high] == 0 ? passing_point(b, q, of_b, a) : passing_point(a, p, of_a, b)};
     return result;
   }
-  result.corners = {
-      a_before_b(a_begin, b_begin) > 0 ? passing_point(b, b_begin, of_b, a)
-                                       : passing_point(a, a_begin, of_a, b),
-      a_before_b(a_end, b_end) > 0 ? passing_point(a, a_end, of_a, b) : passing_point(b, b_end, of_b, a)};
+  result.state = FacetMeeting::State::crossing;
   result.elements = {whole(a), whole(b)};
-  const bool steep = length(cross(a.normal(), b.normal())) >= min_crossing_sine;
-  result.state = steep && !runs_along_edge(result.corners, a) && !runs_along_edge(result.corners, b)
-                     ? FacetMeeting::State::crossing
-                     : FacetMeeting::State::touching;
+  // What is first on the line does not end the segment where it begins, and what is last not where it ends.
+  const auto add_end = [&](std::size_t end, Passage p, Passage q, int b_ends, bool corner_of_b) {
+    result.ends[end] = {b_ends > 0 ? whole(a) : element_of(p, of_a),
+                        b_ends < 0 ? whole(b) : element_of(q, of_b)};
+    result.corners.push_back(b_ends > 0 || (b_ends == 0 && corner_of_b) ? passing_point(b, q, of_b, a)
+                                                                        : passing_point(a, p, of_a, b));
+  };
+  add_end(0, a_begin, b_begin, a_before_b(a_begin, b_begin), of_b.of[b_begin.high] == 0);
+  add_end(1, a_end, b_end, -a_before_b(a_end, b_end), of_b.of[b_end.high] == 0);
   return result;
 }
 
@@ -352,8 +335,7 @@ std::optional<PlaneFacet> PlaneFacet::made(std::vector<ExactPoint> corners) {
   PlaneFacet facet;
   facet.corners_ = std::move(corners);
   const Point3 &p = facet.corners_[0].about, &q = facet.corners_[1].about, &r = facet.corners_[2].about;
-  facet.normal_ = normalized(cross(q - p, r - p));
-  for (const Projection& to : projections(facet.normal_)) {
+  for (const Projection& to : projections(cross(q - p, r - p))) {
     const int turn = orientation(facet.corners_[0], facet.corners_[1], facet.corners_[2], to);
     if (turn == 0) continue;
     facet.to_ = turn > 0 ? to : Projection{to.second, to.first};

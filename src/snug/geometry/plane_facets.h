@@ -20,14 +20,11 @@ class PlaneFacet {
 
   [[nodiscard]] std::size_t size() const { return corners_.size(); }
   [[nodiscard]] const ExactPoint& corner(std::size_t k) const { return corners_[k % corners_.size()]; }
-  /// Of the corners' order, about, of length 1.
-  [[nodiscard]] const Vector3& normal() const { return normal_; }
   /// Where the corners run counter-clockwise.
   [[nodiscard]] Projection to() const { return to_; }
 
  private:
   std::vector<ExactPoint> corners_;
-  Vector3 normal_;
   Projection to_;
 };
 
@@ -35,14 +32,16 @@ class PlaneFacet {
 struct FacetMeeting {
   enum class State : std::uint8_t {
     apart,     ///< nothing
-    touching,  ///< `corners`, as hull; also a segment for curves of which planes are too nearly parallel, or an edge too near
-    crossing,  ///< the segment `corners`, in which they pass through each other
+    touching,  ///< `corners`, as hull
+    crossing,  ///< the segment `corners`, in which each passes through the other one's plane
   };
   State state = State::apart;
   /// A convex polygon, in the order of the first facet's corners, a segment or a point. Exact where the error is 0.
   std::vector<BoundedPoint> corners;
   /// Of each facet the corners of the least element that all of this is on: one, two ends of an edge, or all, in rising order.
   std::array<std::vector<std::size_t>, 2> elements;
+  /// The same of each end of a crossing.
+  std::array<std::array<std::vector<std::size_t>, 2>, 2> ends;
 };
 
 /// Guarantee: the state and the number of corners, in exact arithmetic.

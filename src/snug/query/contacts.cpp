@@ -1,7 +1,9 @@
 #include <snug/contacts.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -56,6 +58,25 @@ Box3 box_of(const Triangle& base, double radius) {
   Box3 box;
   for (const Point3& p : base) box.add(p);
   return widened(box, radius);
+}
+
+// May a segment meet a box?
+bool may_pass(const Box3& box, const std::vector<BoundedPoint>& ends) {
+  const Vector3 along = ends[1].position - ends[0].position;
+  const double largest = std::max(max_abs(ends[0].position - Point3{}), max_abs(ends[1].position - Point3{}));
+  const double slack = 0x1p-40 + std::max(ends[0].error, ends[1].error) + 0x1p-50 * largest;
+  double from = 0, to = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double low = box.lower[axis] - slack - ends[0].position[axis],
+                 high = box.upper[axis] + slack - ends[0].position[axis];
+    if (std::fabs(along[axis]) <= slack) {
+      if (low > slack || high < -slack) return false;
+      continue;
+    }
+    from = std::max(from, std::min(low / along[axis], high / along[axis]));
+    to = std::min(to, std::max(low / along[axis], high / along[axis]));
+  }
+  return from <= to;
 }
 
 // Lists pairs of pieces that may be within the tolerance of each other.
@@ -149,10 +170,11 @@ class ContactWalk {
       if (gap <= 0 && options_.curves) item.pieces[s] = std::make_shared<const Patch>(patch);
     }
     item.facets = facets_of(pair);
-    if (item.facets != nullptr && item.facets->state != FacetMeeting::State::crossing) item.pieces = {};
-    if (gap <= 0 && !options_.curves && pieces.near.certain_distance == 0) {
+    if (item.facets != nullptr) item.pieces = {};
+    const bool may_cross =
+        item.facets == nullptr ? !options_.curves : item.facets->state == FacetMeeting::State::crossing;
+    if (gap <= 0 && may_cross && pieces.near.certain_distance == 0)
       item.crossing = proves_crossing(frames_, pieces);
-    }
     near_.push_back(std::move(item));
   }
 
@@ -216,7 +238,7 @@ class ContactsSearch {
     if (options_.curves) find_curves();
     take_facets();
     find_regions();
-    add_areas();
+    add_facets();
     add_curves();
     answer_.compared = cut_.compared;
     return std::move(answer_);
@@ -265,6 +287,8 @@ class ContactsSearch {
           item.crossing = surface(0).rules().triangular() && surface(1).rules().triangular();
           break;
         case FacetMeeting::State::crossing:
+          item.kept = tolerance_ > 0 || (may_pass(item.boxes[0], item.facets->corners) &&
+                                         may_pass(item.boxes[1], item.facets->corners));
           break;
       }
     }
@@ -381,36 +405,82 @@ class ContactsSearch {
     }
   }
 
-  void add_areas() {
-    std::map<std::array<std::uint32_t, 2>, std::vector<std::uint32_t>> items;
+  // What plane faces have in common.
+  void add_facets() {
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
-      if (near_[i].facets == nullptr || near_[i].facets->state != FacetMeeting::State::touching) continue;
-      items[{surface(0).place(near_[i].roots[0]).owner, surface(1).place(near_[i].roots[1]).owner}].push_back(
-          i);
+      if (near_[i].facets != nullptr && near_[i].kept)
+        items_[{surface(0).place(near_[i].roots[0]).owner, surface(1).place(near_[i].roots[1]).owner}]
+            .push_back(i);
     }
-    const PowerOfTwo back = frames_.to_mesh_units();
-    for (const FacetContacts::Touching& touching : facets_.touching()) {
-      // All pairs of pieces at a point are in one region; where the budget ended there may be none.
-      const BoundedPoint& first = touching.meeting->corners.front();
-      const Box3 at = widened({first.position, first.position}, first.error);
-      const auto& own = items[touching.faces];
-      const auto item = std::find_if(own.begin(), own.end(), [&](std::uint32_t i) {
-        return touch(near_[i].boxes[0], at) && touch(near_[i].boxes[1], at);
-      });
-      if (item == own.end()) continue;
-      ContactArea area{{}, 0, touching.faces, near_[*item].region};
-      for (const BoundedPoint& corner : touching.meeting->corners) {
-        const Point3& p = area.points.emplace_back(require_representable(back.apply(corner.position)));
-        const Point3 again = back.inverse().apply(p);
-        const double lost = again == corner.position ? 0 : underflow_error;
-        area.error = std::max(area.error, corner.error > 0 ? unscaled_up(corner.error, back) + lost : lost);
+    for (const FacetContacts::Touching& touching : facets_.touching()) add_area(touching);
+    add_crossings();
+  }
+
+  // Segments in which faces pass through each other, as arcs.
+  void add_crossings() {
+    const std::vector<FacetContacts::Crossing> crossings = facets_.crossings();
+    std::vector<std::uint32_t> numbers(crossings.size(), ChainArc::none);
+    const std::size_t first = cut_.arcs.size();
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+      const std::optional<std::uint32_t> item = item_at(crossings[i].segment);
+      if (!item) continue;
+      prove(near_[*item].region);
+      if (!options_.curves) continue;
+      numbers[i] = static_cast<std::uint32_t>(cut_.arcs.size());
+      ChainArc& arc = cut_.arcs.emplace_back();
+      arc.roots = near_[*item].roots;
+      arc.contact = *item;
+      arc.next = crossings[i].next;
+      arc.at_border = crossings[i].at_border;
+      for (std::size_t e = 0; e < 2; ++e) {
+        const BoundedPoint& corner = crossings[i].segment.meeting->corners[e];
+        CutEnd& end = arc.arc.ends[e];
+        end.sure = true;
+        end.point = arc.ends[e].point = corner.position;
+        end.error = spatial_error(corner.error);
+        arc.arc.box.add(widened({corner.position, corner.position}, corner.error));
       }
-      answer_.regions[area.region].verdict = Verdict::intersecting;
-      answer_.regions[area.region].distance = {0, 0};
-      answer_.areas.push_back(std::move(area));
+    }
+    for (std::size_t a = first; a < cut_.arcs.size(); ++a) {
+      for (std::uint32_t& next : cut_.arcs[a].next) {
+        if (next == FacetContacts::Crossing::none) continue;
+        const std::uint32_t number = numbers[next / 2];
+        next = number == ChainArc::none ? ChainArc::none : 2 * number + next % 2;
+      }
     }
   }
 
+  // A pair of pieces at the first point of what two faces have in common: all of these are in one region. Where the budget ended
+  // there may be none.
+  [[nodiscard]] std::optional<std::uint32_t> item_at(const FacetContacts::Touching& touching) {
+    const BoundedPoint& first = touching.meeting->corners.front();
+    const Box3 at = widened({first.position, first.position}, first.error);
+    const auto& own = items_[touching.faces];
+    const auto item = std::find_if(own.begin(), own.end(), [&](std::uint32_t i) {
+      return touch(near_[i].boxes[0], at) && touch(near_[i].boxes[1], at);
+    });
+    if (item == own.end()) return std::nullopt;
+    return *item;
+  }
+  void prove(std::uint32_t region) {
+    answer_.regions[region].verdict = Verdict::intersecting;
+    answer_.regions[region].distance = {0, 0};
+  }
+
+  void add_area(const FacetContacts::Touching& touching) {
+    const std::optional<std::uint32_t> item = item_at(touching);
+    if (!item) return;
+    const PowerOfTwo back = frames_.to_mesh_units();
+    ContactArea area{{}, 0, touching.faces, near_[*item].region};
+    for (const BoundedPoint& corner : touching.meeting->corners) {
+      const Point3& p = area.points.emplace_back(require_representable(back.apply(corner.position)));
+      const Point3 again = back.inverse().apply(p);
+      const double lost = again == corner.position ? 0 : underflow_error;
+      area.error = std::max(area.error, corner.error > 0 ? unscaled_up(corner.error, back) + lost : lost);
+    }
+    prove(area.region);
+    answer_.areas.push_back(std::move(area));
+  }
   void add_curves() {
     const PowerOfTwo back = frames_.to_mesh_units();
     for (const Chains::Chain& chain : chains_of(cut_).chains) {
@@ -484,6 +554,7 @@ class ContactsSearch {
   const Run& run_;
   double tolerance_;
   std::vector<ContactPair> near_;
+  std::map<std::array<std::uint32_t, 2>, std::vector<std::uint32_t>> items_;  // by two plane faces
   CutSurfaces cut_;
   Contacts answer_;
 };

@@ -94,13 +94,26 @@ BoundedPoint FacetContacts::posed(const BoundedPoint& point) const {
   return common_->apply(point);
 }
 
-// The vertices of the element that a contact lies on, in rising order.
-std::vector<std::uint32_t> FacetContacts::names(std::size_t side, const Touching& contact) const {
-  const std::span<const VertexId> face = surface(side).topology().face(FaceId(contact.faces[side]));
+// The vertices at corners of a face, in rising order.
+std::vector<std::uint32_t> FacetContacts::names(std::size_t side, std::uint32_t face,
+                                                const std::vector<std::size_t>& corners) const {
+  const std::span<const VertexId> vertices = surface(side).topology().face(FaceId(face));
   std::vector<std::uint32_t> result;
-  for (const std::size_t k : contact.meeting->elements[side]) result.push_back(face[k].value());
+  for (const std::size_t k : corners) result.push_back(vertices[k].value());
   std::sort(result.begin(), result.end());
   return result;
+}
+
+// Is an element of a face a corner or an edge at which the surface ends?
+bool FacetContacts::on_border(std::size_t side, std::uint32_t face,
+                              const std::vector<std::size_t>& corners) const {
+  const Topology& topology = surface(side).topology();
+  const std::span<const VertexId> vertices = topology.face(FaceId(face));
+  if (corners.size() == 1) return topology.on_boundary(vertices[corners[0]]);
+  if (corners.size() > 2) return false;
+  const std::size_t first = corners[0] + 1 == corners[1] ? corners[0] : corners[1];
+  return topology.on_boundary(
+      topology.edge_of(topology.first_of(FaceId(face)) + static_cast<HalfEdge>(first)));
 }
 
 std::vector<FacetContacts::Touching> FacetContacts::touching() const {
@@ -112,7 +125,7 @@ std::vector<FacetContacts::Touching> FacetContacts::touching() const {
   for (const auto& [faces, meeting] : known_) {
     if (meeting.state != FacetMeeting::State::touching) continue;
     Contact contact{{faces, &meeting}, {}};
-    for (std::size_t s = 0; s < 2; ++s) contact.names[s] = names(s, contact.touching);
+    for (std::size_t s = 0; s < 2; ++s) contact.names[s] = names(s, faces[s], meeting.elements[s]);
     all.push_back(std::move(contact));
   }
   // By each vertex of A and of B that a contact names.
@@ -141,6 +154,31 @@ std::vector<FacetContacts::Touching> FacetContacts::touching() const {
                                  [&](const Entry& e) { return std::get<0>(e) != u || std::get<1>(e) != v; }),
                     [&](const Entry& e) { return holds(std::get<2>(e), i); });
     if (!held) result.push_back(all[i].touching);
+  }
+  return result;
+}
+
+std::vector<FacetContacts::Crossing> FacetContacts::crossings() const {
+  std::vector<Crossing> result;
+  // By the elements of A and of B that an end is the only common point of.
+  using Ends = std::vector<std::uint32_t>;
+  std::map<std::array<std::vector<std::uint32_t>, 2>, Ends> at;
+  for (const auto& [faces, meeting] : known_) {
+    if (meeting.state != FacetMeeting::State::crossing) continue;
+    Crossing crossing{{faces, &meeting}};
+    for (std::uint32_t e = 0; e < 2; ++e) {
+      const auto& [of_a, of_b] = meeting.ends[e];
+      at[{names(0, faces[0], of_a), names(1, faces[1], of_b)}].push_back(
+          static_cast<std::uint32_t>(2 * result.size() + e));
+      crossing.at_border[e] = on_border(0, faces[0], of_a) || on_border(1, faces[1], of_b);
+    }
+    result.push_back(crossing);
+  }
+  for (const auto& [elements, ends] : at) {
+    for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
+      result[ends[i] / 2].next[ends[i] % 2] = ends[i + 1];
+      result[ends[i + 1] / 2].next[ends[i + 1] % 2] = ends[i];
+    }
   }
   return result;
 }

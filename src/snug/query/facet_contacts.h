@@ -33,6 +33,17 @@ class FacetContacts {
   /// have.
   [[nodiscard]] std::vector<Touching> touching() const;
 
+  struct Crossing {
+    static constexpr std::uint32_t none = UINT32_MAX;
+    Touching segment;
+    /// By end: that of another crossing, 2 * its number + 0 or 1, which is the same point, as an edge or a corner names it; `none` if there
+    /// is none left. Each is that of one end.
+    std::array<std::uint32_t, 2> next{none, none};
+    std::array<bool, 2> at_border{};  ///< does an end lie on the border of a surface?
+  };
+  /// Of all that were asked for, what passes through each other.
+  [[nodiscard]] std::vector<Crossing> crossings() const;
+
  private:
   using Key = std::array<std::uint32_t, 2>;
 
@@ -43,7 +54,10 @@ class FacetContacts {
   [[nodiscard]] std::optional<PlaneFacet> made(std::size_t side, std::uint32_t owner) const;
   [[nodiscard]] std::optional<ExactPoint> placed(std::size_t side, VertexId vertex) const;
   [[nodiscard]] BoundedPoint posed(const BoundedPoint& point) const;
-  [[nodiscard]] std::vector<std::uint32_t> names(std::size_t side, const Touching& contact) const;
+  [[nodiscard]] std::vector<std::uint32_t> names(std::size_t side, std::uint32_t face,
+                                                 const std::vector<std::size_t>& corners) const;
+  [[nodiscard]] bool on_border(std::size_t side, std::uint32_t face,
+                               const std::vector<std::size_t>& corners) const;
 
   const PairFrames& frames_;
   bool comparable_ = true;
