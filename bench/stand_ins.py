@@ -173,6 +173,21 @@ def flat_part(cells):
     return grid(cells, cells, lambda x, y: 0.0 if x < 0.5 else 0.25, triangles=True)
 
 
+def disc(sides):
+    """A flat cylinder whose caps are fans around one vertex, as CAD triangulates them."""
+    mesh = Mesh()
+    for z in (0.0, 0.1):
+        for k in range(sides):
+            angle = 2 * math.pi * k / sides
+            mesh.point(math.cos(angle), math.sin(angle), z)
+    for k in range(1, sides - 1):
+        mesh.faces += [[0, k + 1, k], [sides, sides + k, sides + k + 1]]
+    for k in range(sides):
+        after = (k + 1) % sides
+        mesh.faces += [[k, after, sides + after], [k, sides + after, sides + k]]
+    return mesh
+
+
 def large(columns):
     mesh = grid(columns, columns, lambda x, y: 0.1 * math.sin(8 * x) * math.cos(7 * y))
     return mesh
@@ -186,7 +201,7 @@ STAND_INS = {
     "pole_9": lambda: poles(9, False), "pole_16": lambda: poles(16, False), "pole_32": lambda: poles(32, False),
     "pole_64": lambda: poles(64, False), "loop_pole_32": lambda: poles(32, True), "saddle_corners": saddle_corners,
     "thread": lambda: thread(4, 16), "sheets_at_a_vertex": sheets_at_a_vertex, "vertices_twice": vertices_twice,
-    "soup": lambda: soup(12), "needles": needles, "flat_part": lambda: flat_part(60), "large": lambda: large(158),
+    "soup": lambda: soup(12), "needles": needles, "flat_part": lambda: flat_part(60), "disc": lambda: disc(60), "large": lambda: large(158),
 }
 
 

@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <random>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace snug::self_contact_test {
@@ -232,6 +234,57 @@ TEST(self_contact, of_some_triangles_are_those_of_all_that_name_one) {
   }
   EXPECT_GT(contacts, 50u);
   EXPECT_GT(left_out, 20u);
+}
+
+// Triangles of a large fan that turns once are not compared with each other. Fans that are open, closed, or go around more than once; flat,
+// cones, and with some triangles turned over; two of them with a common rim; beside triangles that pass through them.
+TEST(self_contact, of_large_fans_are_those_of_each_pair) {
+  std::mt19937_64 random(10);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  std::map<std::string, std::size_t> counts;
+  for (int trial = 0; trial < 8; ++trial) {
+    constexpr std::uint32_t count = 260;
+    Mesh mesh;
+    const bool closed = trial % 3 == 0, twice = trial % 3 == 1, bent = trial % 2 == 0;
+    const double turn = (closed ? 2 : twice ? 2.05 : 1.9) * std::numbers::pi;
+    mesh.points.push_back({0, 0, bent ? 0.3 : 0});
+    // The other fan is below, or passes through the one.
+    mesh.points.push_back(trial % 4 == 0 ? Point3{0.1, 0, -0.4} : Point3{0.9, 0, 0.1});
+    for (std::uint32_t k = 0; k <= count; ++k) {
+      const double angle = turn * k / count + (trial == 5 && k % 90 == 7 ? 0.1 : 0);
+      mesh.points.push_back({std::cos(angle), std::sin(angle), bent ? 0.01 * unit() : 0});
+    }
+    const auto rim = [&](std::uint32_t k) { return 2 + (closed ? k % count : k); };
+    for (std::uint32_t k = 0; k < count; ++k) {
+      mesh.triangles.push_back({0, rim(k), rim(k + 1)});
+      if (trial % 2 == 0) mesh.triangles.push_back({1, rim(k + 1), rim(k)});
+    }
+    for (int k = 0; trial % 2 == 1 && k < 3; ++k) {
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      for (const double z : {-0.2, 0.2, 0.3}) mesh.points.push_back({unit() - 0.5, unit() - 0.5, z});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    // Of every seventh pair.
+    const auto is_asked = [](std::uint32_t a, std::uint32_t b) { return (a + 3 * b) % 7 == 0; };
+    std::vector<TrianglePair> expected, asked;
+    for (std::uint32_t a = 0; a < mesh.triangles.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < mesh.triangles.size(); ++b) {
+        if (!is_asked(a, b)) continue;
+        for (const TrianglePair& pair :
+             self_contacts(mesh.points, std::vector<Names>{mesh.triangles[a], mesh.triangles[b]}, 3, 1))
+          expected.push_back({a, b, pair.contact});
+      }
+    }
+    const auto all = self_contacts(mesh.points, mesh.triangles, 100'000, 2);
+    std::copy_if(all.begin(), all.end(), std::back_inserter(asked),
+                 [&](const TrianglePair& pair) { return is_asked(pair.a, pair.b); });
+    EXPECT_EQ(asked, expected) << trial;
+    for (const TrianglePair& pair : expected)
+      counts["of two fans"] += pair.a % 2 != pair.b % 2 && trial % 4 == 2;
+    counts[twice ? "twice" : closed ? "closed" : "open"] += expected.size();
+    counts[expected.empty() ? "clear" : "in contact"] += 1;
+  }
+  for (const char* name : {"twice", "of two fans", "in contact"}) EXPECT_GT(counts[name], 2u) << name;
 }
 
 TEST(self_contact, of_coordinates_too_small_for_exact_signs_is_unknown) {

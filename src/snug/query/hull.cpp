@@ -253,7 +253,9 @@ class OwnContacts {
 // where they are they need not be compared again.
 class KnownFacets {
  public:
-  [[nodiscard]] bool contains(const Triangle& facet) const { return known_.contains(facet); }
+  [[nodiscard]] bool contains(const Triangle& facet) const {
+    return !known_.empty() && known_.contains(facet);
+  }
   void clear() { known_.clear(); }
   void add(const Triangle& facet) { known_.insert(facet); }
 
@@ -534,6 +536,7 @@ class OneHull {
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
       clear[a] = clear[b] = 0;
     }
+    if (problems_.empty()) return;
     known_.clear();
     for (std::size_t t = 0; t < count; ++t) {
       if (clear[t] != 0) known_.add(scaled(facets_.positions, mesh_.triangles[t]));

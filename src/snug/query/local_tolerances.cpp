@@ -69,9 +69,14 @@ LocalTolerances::LocalTolerances(const LimitSurface& surface, std::vector<double
       marked_owners_(of_owners_.size(), 0),
       least_(*std::min_element(of_owners_.begin(), of_owners_.end())) {}
 
+std::optional<double> LocalTolerances::of_all(PatchId patch) const {
+  if (!cells_.empty() && cells_.contains(patch.value())) return std::nullopt;
+  return of_owners_[surface_.place(patch).owner];
+}
+
 double LocalTolerances::of(const PatchPart& part) const {
+  if (const std::optional<double> all = of_all(part.patch)) return *all;
   const auto found = cells_.find(part.patch.value());
-  if (found == cells_.end()) return of_owners_[surface_.place(part.patch).owner];
   double least = INFINITY;
   visit(found->second, part, 0, [&](const Cell& cell) { least = std::min(least, cell.tolerance); });
   return least;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -24,6 +25,8 @@ class LocalTolerances {
 
   /// The least one of pieces that a part may have a point in common with.
   [[nodiscard]] double of(const PatchPart& part) const;
+  /// That of a whole patch, if all of its pieces have the same.
+  [[nodiscard]] std::optional<double> of_all(PatchId patch) const;
   [[nodiscard]] double least() const { return least_; }
 
   /// Chooses where tolerances are halved that are larger than `least`: of the owner, while it is larger than `whole`; of pieces about

@@ -205,7 +205,8 @@ class MeshRefinement {
   [[nodiscard]] double tolerance(Index t) const {
     if (limits_.slope < INFINITY) return std::min(limits_.tolerance, seen_tolerance(t));
     if (limits_.local == nullptr) return limits_.tolerance;
-    return std::max(surface_.scale().apply(limits_.local->of(part(t))), min_tolerance);
+    const std::optional<double> all = limits_.local->of_all(PatchId(facets_[t].patch));
+    return std::max(surface_.scale().apply(all ? *all : limits_.local->of(part(t))), min_tolerance);
   }
   [[nodiscard]] PatchPart part(Index t) const {
     const FacetPlaces at = places(t);

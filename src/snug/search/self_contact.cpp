@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include <snug/geometry/exact_sign.h>
 #include <snug/search/feet.h>
@@ -228,6 +233,107 @@ TriangleContact contact_of_one(std::span<const Point3> points, const Names& t) {
   return plane_of(corners) ? TriangleContact::none : TriangleContact::collapsed;
 }
 
+// Is a box around it much less than a ball?
+bool is_narrow(const Triangle& t) {
+  const double longest = length_sq(longest_edge(t));
+  return length_sq(cross(t[1] - t[0], t[2] - t[0])) < 0x1p-6 * longest * longest;
+}
+
+// ---- Fans ----
+
+// Around a vertex of so many triangles most pairs are near each other.
+constexpr std::size_t min_fan = 256;
+
+// Triangles around a vertex, each on an edge with the one before.
+struct Fan {
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t>
+      rim;  // their other vertices in order, the first one again at the end of a closed fan
+};
+
+// The largest fan of some triangles that name v; none where three are at an edge.
+std::optional<Fan> fan_around(std::uint32_t v, std::span<const std::uint32_t> around,
+                              std::span<const Names> triangles) {
+  std::unordered_map<std::uint32_t, std::uint32_t> from;  // by the vertex of the rim where it begins
+  std::unordered_set<std::uint32_t> ends;
+  const auto next = [&](std::uint32_t t, std::size_t by) {
+    const Names& names = triangles[t];
+    return names[(static_cast<std::size_t>(std::find(names.begin(), names.end(), v) - names.begin()) + by) %
+                 3];
+  };
+  for (const std::uint32_t t : around) {
+    if (!from.emplace(next(t, 1), t).second || !ends.insert(next(t, 2)).second) return std::nullopt;
+  }
+  Fan largest;
+  const auto walk = [&](std::uint32_t begin) {
+    Fan fan{{}, {begin}};
+    for (auto at = from.find(begin); at != from.end(); at = from.find(fan.rim.back())) {
+      fan.triangles.push_back(at->second);
+      fan.rim.push_back(next(at->second, 2));
+      from.erase(at);
+    }
+    if (fan.triangles.size() > largest.triangles.size()) largest = std::move(fan);
+  };
+  for (const std::uint32_t t : around) {
+    if (!ends.contains(next(t, 1))) walk(next(t, 1));
+  }
+  // What is left is closed.
+  for (const std::uint32_t t : around) walk(next(t, 1));
+  return largest;
+}
+
+// Does a fan whose triangles all turn the same way, seen along an axis, go around at most once? Then any two of its triangles have in
+// common what they name alone.
+bool turns_once(std::span<const Point3> points, std::uint32_t v, const Fan& fan, Projection plane) {
+  const auto side = [&](std::uint32_t a, std::uint32_t b) {
+    return orientation(points[v], points[a], points[b], plane);
+  };
+  const std::size_t count = fan.triangles.size();
+  const int turn = side(fan.rim[0], fan.rim[1]);
+  bool beyond = false;  // half a turn from the first edge
+  for (std::size_t k = 1; k < count; ++k) {
+    const bool last = k + 1 == count && fan.rim[count] == fan.rim[0];
+    const int of_end = last ? 0 : turn * side(fan.rim[0], fan.rim[k + 1]);
+    if (beyond && !last && of_end >= 0) return false;
+    beyond = beyond || of_end <= 0;
+  }
+  return true;
+}
+
+// Which large fan of those in which no two triangles meet a triangle belongs to, from 1 on; 0 for none.
+std::vector<std::uint32_t> large_fans(std::span<const Point3> points, std::span<const Names> triangles,
+                                      std::span<const TriangleContact> alone, std::uint32_t& count) {
+  std::vector<std::uint32_t> valence(points.size(), 0), fan_of(triangles.size(), 0);
+  for (const Names& t : triangles) {
+    for (const std::uint32_t v : t) ++valence[v];
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> large;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : triangles[t]) {
+      if (valence[v] >= min_fan) large[v].push_back(t);
+    }
+  }
+  count = 0;
+  for (const auto& [v, around] : large) {
+    for (const Projection& plane : {Projection{0, 1}, Projection{1, 2}, Projection{2, 0}}) {
+      for (const int turn : {1, -1}) {
+        std::vector<std::uint32_t> some;
+        std::copy_if(around.begin(), around.end(), std::back_inserter(some), [&](std::uint32_t t) {
+          const auto& [a, b, c] = triangles[t];
+          return alone[t] == TriangleContact::none && fan_of[t] == 0 &&
+                 orientation(points[a], points[b], points[c], plane) == turn;
+        });
+        if (some.size() < min_fan) continue;
+        const std::optional<Fan> fan = fan_around(v, some, triangles);
+        if (!fan || fan->triangles.size() < min_fan || !turns_once(points, v, *fan, plane)) continue;
+        ++count;
+        for (const std::uint32_t t : fan->triangles) fan_of[t] = count;
+      }
+    }
+  }
+  return fan_of;
+}
+
 }  // namespace
 
 std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::span<const Names> triangles,
@@ -235,14 +341,25 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
                                         std::span<const std::uint8_t> wanted) {
   if (triangles.empty()) return {};
   const auto is_wanted = [&](std::size_t i) { return wanted.empty() || wanted[i] != 0; };
-  std::vector<QuadraticTriangle> flat;
   std::vector<TriangleContact> alone;
-  for (const Names& t : triangles) {
-    flat.push_back(flat_quadratic({points[t[0]], points[t[1]], points[t[2]]}));
-    alone.push_back(contact_of_one(points, t));
+  for (const Names& t : triangles) alone.push_back(contact_of_one(points, t));
+  std::uint32_t fans = 0;
+  const std::vector<std::uint32_t> fan_of = large_fans(points, triangles, alone, fans);
+  // A set for each fan, whose triangles are not compared with each other, and one for all others.
+  const auto flat = [&](std::size_t t) {
+    return flat_quadratic({points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]});
+  };
+  std::vector<std::vector<std::uint32_t>> members(fans + 1);
+  std::vector<std::vector<QuadraticTriangle>> facets(fans + 1);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    members[fan_of[t]].push_back(t);
+    facets[fan_of[t]].push_back(flat(t));
   }
-  PieceSet set(std::move(flat));
-  set.prepare(threads);
+  std::vector<PieceSet> sets;
+  for (std::vector<QuadraticTriangle>& of_set : facets) {
+    sets.emplace_back(std::move(of_set));
+    if (sets.back().size() > 0) sets.back().prepare(threads);
+  }
   constexpr std::size_t block = 1024;
   std::vector<std::vector<TrianglePair>> found((triangles.size() + block - 1) / block);
   parallel_for(found.size(), threads, [&](std::size_t begin, std::size_t end) {
@@ -254,21 +371,33 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
         int of_this = 0;
         if (alone[i] != TriangleContact::none) found[b].push_back({own, own, alone[i]});
         if (alone[i] == TriangleContact::collapsed) continue;
-        const Slabs slabs(set[i].corners);
-        set.visit_near(slim_box(set[i]), [&](std::uint32_t other) {
+        const QuadraticTriangle facet = flat(i);
+        const Slabs slabs(facet.corners);
+        const auto compare = [&](std::uint32_t other, const Triangle& corners) {
           if (of_this == max_of_one) return true;
-          if (other == i || alone[other] == TriangleContact::collapsed) return false;
+          if (other == own || alone[other] == TriangleContact::collapsed) return false;
           // Of two that are wanted the first one finds the pair.
-          if (other < i && is_wanted(other)) return false;
+          if (other < own && is_wanted(other)) return false;
           const bool known = alone[i] == TriangleContact::none && alone[other] == TriangleContact::none;
-          const TriangleContact contact = slabs.apart(set[other].corners) ? TriangleContact::none
+          const TriangleContact contact = slabs.apart(corners) ? TriangleContact::none
                                           : known ? contact_between(points, triangles[i], triangles[other])
                                                   : TriangleContact::unknown;
           if (contact == TriangleContact::none) return false;
           found[b].push_back({std::min(own, other), std::max(own, other), contact});
           ++of_this;
           return false;
-        });
+        };
+        const bool narrow = is_narrow(facet.corners);
+        const Obb box = narrow ? slim_box(facet) : Obb{};
+        for (std::uint32_t s = 0; s < sets.size(); ++s) {
+          if (sets[s].size() == 0 || (s > 0 && s == fan_of[i])) continue;
+          const auto visit = [&](std::uint32_t piece) {
+            return compare(members[s][piece], sets[s][piece].corners);
+          };
+          narrow
+              ? static_cast<void>(sets[s].visit_near(box, visit))
+              : for_each_near(sets[s], facet, [&](std::uint32_t piece) { static_cast<void>(visit(piece)); });
+        }
       }
       std::sort(found[b].begin(), found[b].end());
     }
