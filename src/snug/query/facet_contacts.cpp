@@ -174,10 +174,21 @@ std::vector<FacetContacts::Crossing> FacetContacts::crossings() const {
     }
     result.push_back(crossing);
   }
+  std::vector<std::uint32_t> point_of(2 * result.size());
+  std::uint32_t point = 0;
   for (const auto& [elements, ends] : at) {
-    for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
-      result[ends[i] / 2].next[ends[i] % 2] = ends[i + 1];
-      result[ends[i + 1] / 2].next[ends[i + 1] % 2] = ends[i];
+    for (const std::uint32_t end : ends) point_of[end] = point;
+    ++point;
+  }
+  const auto next = [&](std::uint32_t end) -> std::uint32_t& { return result[end / 2].next[end % 2]; };
+  for (const auto& [elements, ends] : at) {
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      for (std::size_t k = i + 1; k < ends.size() && next(ends[i]) == Crossing::none; ++k) {
+        // Not one that leads back: the same segment of faces that stand twice.
+        if (next(ends[k]) != Crossing::none || point_of[ends[i] ^ 1u] == point_of[ends[k] ^ 1u]) continue;
+        next(ends[i]) = ends[k];
+        next(ends[k]) = ends[i];
+      }
     }
   }
   return result;
