@@ -35,20 +35,16 @@ Patch random_values(const Kind& kind, std::mt19937_64& random) {
   return patch;
 }
 
-// Both values, less their means.
-std::vector<double> centred(const Patch& patch) {
+// Both values, less their means; along axes, and over a number.
+std::vector<double> centred(Patch patch, const std::array<Point2, 2>& axes = {{{1, 0}, {0, 1}}},
+                            double scale = 1) {
+  for (Vector3& p : patch.points) p = {dot(axes[0], {p.x, p.y}) / scale, dot(axes[1], {p.x, p.y}) / scale, 0};
   std::vector<double> v;
   Vector3 mean;
   for (const Vector3& p : patch.points) mean = mean + (1 / static_cast<double>(patch.points.size())) * p;
   for (const Vector3& p : patch.points) v.push_back(p.x - mean.x);
   for (const Vector3& p : patch.points) v.push_back(p.y - mean.y);
   return v;
-}
-
-double dot(const std::vector<double>& u, const std::vector<double>& v) {
-  double sum = 0;
-  for (std::size_t i = 0; i < u.size(); ++i) sum += u[i] * v[i];
-  return sum;
 }
 
 // The largest extent of a value.
@@ -61,16 +57,6 @@ double widest(const std::vector<double>& v) {
     most = std::max(most, 0.5 * (*high - *low));
   }
   return most;
-}
-
-// What is left of some values beside a multiple of others, which comes near by least squares; and that multiple.
-struct Fit {
-  double left, times;
-};
-Fit fit(std::vector<double> values, const std::vector<double>& by) {
-  const double times = dot(values, by) / dot(by, by);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= times * by[i];
-  return {widest(values), times};
 }
 
 // Down to where a level is hardly more than rounding.
@@ -88,32 +74,48 @@ void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
     at = split(at, static_cast<unsigned>((decay.corner + at.first) % 3));
   }
   ASSERT_GT(direct.size(), std::min<std::size_t>(rings.count(), 8) - 1);
-  // What the levels are scaled by.
-  std::vector<double> scales;
+  // What the one that is split level by level is off.
+  const auto off_of = [&](std::size_t level, const std::array<Point2, 2>& axes) {
+    double weight = 0;
+    for (const Point2& axis : axes) weight = std::max(weight, std::fabs(axis.x) + std::fabs(axis.y));
+    return weight * direct[level].error / std::pow(middle(decay.least), static_cast<double>(level));
+  };
+  const auto scale = [&](std::size_t level) {
+    return std::pow(middle(decay.least), static_cast<double>(level));
+  };
   for (std::size_t level = 0; level < direct.size(); ++level) {
     const Patch net = rings.net(level);
-    const Fit same = fit(centred(direct[level]), centred(net));
-    scales.push_back(same.times);
-    EXPECT_GT(same.times, 0);
-    EXPECT_LE(same.left, (2 * net.error + 1e-6 * net.largest) * same.times) << "level " << level;
+    std::vector<double> rest = centred(direct[level], rings.axes(level), scale(level));
+    const std::vector<double> own = centred(net);
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= own[i];
+    EXPECT_LE(widest(rest), 2 * net.error + 1e-6 * net.largest + 2 * off_of(level, rings.axes(level)))
+        << "level " << level;
   }
   for (std::size_t level = 0; level < direct.size(); ++level) {
-    const auto [net, growth] = rings.all_further(level);
-    EXPECT_EQ(growth.has_value(), decay.growth != RingDecay::Growth::none);
+    const std::vector<Patch> nets = rings.all_further(level);
+    const Patch& net = nets[0];
+    EXPECT_EQ(nets.size(), 1U + (decay.larger ? 1 : 0) + (decay.links > 0 ? 1 : 0));
     if (!(net.error < 0.2 * net.largest)) continue;
+    // How often each growth is added: as often as steps are made, and sums of powers of the ratio, or sums of these.
+    std::vector<double> times(nets.size(), 0);
+    times[0] = 1;
+    double power = 1, sum = 0;
     for (std::size_t further = level; further < direct.size(); ++further) {
-      std::vector<double> rest = centred(direct[further]);
-      const std::vector<double> one = centred(net);
-      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = rest[i] / scales[further] - one[i];
-      const Fit found = growth ? fit(rest, centred(*growth)) : Fit{widest(rest), 0};
-      // Least squares is not what comes nearest in extent, and late levels are mostly rounding.
-      const double times = std::fabs(found.times);
-      const double off = net.error + (growth ? times * growth->error : 0);
-      const double large = net.largest + (growth ? times * growth->largest : 0);
-      EXPECT_LE(found.left, 2 * off + 1e-6 * large) << "level " << level << " and " << further;
-      if (growth && off < 1e-3 * growth->largest) {
-        EXPECT_GT(found.times, -0.01) << "level " << level << " and " << further;
+      std::vector<double> rest = centred(direct[further], rings.axes(level), scale(further));
+      double off = off_of(further, rings.axes(level)), large = 0;
+      for (std::size_t n = 0; n < nets.size(); ++n) {
+        const std::vector<double> one = centred(nets[n]);
+        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= times[n] * one[i];
+        off += times[n] * nets[n].error;
+        large += times[n] * nets[n].largest;
       }
+      EXPECT_LE(widest(rest), 1.001 * off + 1e-10 * large) << "level " << level << " and " << further;
+      if (decay.larger) {
+        times.back() += decay.links > 0 ? sum : power;
+        sum += power;
+        power *= middle(decay.ratio);
+      }
+      if (decay.links > 0) times[1] += 1;
     }
   }
 }
@@ -195,7 +197,7 @@ TEST(corner_rings, holds_all_levels_at_boundaries) {
 }
 
 // Vertex 0 of n faces, three rings more around it; `edges` of the spokes are sharp, from it outwards. On the border: half of a turn.
-ControlMesh fan(std::uint32_t n, bool triangles, bool border, std::uint32_t edges) {
+ControlMesh fan(std::uint32_t n, bool triangles, bool border, std::uint32_t edges, bool corner = false) {
   ControlMesh mesh;
   mesh.points.push_back({0, 0, 0});
   const std::uint32_t steps = triangles ? n : 2 * n, around = border ? steps + 1 : steps;
@@ -235,7 +237,7 @@ ControlMesh fan(std::uint32_t n, bool triangles, bool border, std::uint32_t edge
       mesh.tags.creases.push_back({VertexId(ring == 0 ? 0 : here - around), VertexId(here), 10});
     }
   }
-  if (border) mesh.tags.corners.push_back({VertexId(0), 10});
+  if (corner) mesh.tags.corners.push_back({VertexId(0), 10});
   return mesh;
 }
 
@@ -258,7 +260,8 @@ std::size_t expect_all_hold(const ControlMesh& mesh, Scheme scheme, std::mt19937
   return seen.size();
 }
 
-// Where the rows are found, not derived: darts, sharp corners of two faces and more, and Midedge at triangles.
+// Where the rows are found, not derived: darts, sharp corners of two faces and more, wide fans on borders, one quad, and Midedge at
+// triangles.
 TEST(corner_rings, holds_all_levels_by_rows_that_are_found) {
   std::mt19937_64 random(3);
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
@@ -266,10 +269,15 @@ TEST(corner_rings, holds_all_levels_by_rows_that_are_found) {
       EXPECT_GT(expect_all_hold(fan(n, scheme == Scheme::loop, false, 1), scheme, random), 2U)
           << name_of(scheme) << " dart of " << n;
     }
-    for (std::uint32_t n = 2; n <= 5; ++n) {
-      const std::size_t found = expect_all_hold(fan(n, scheme == Scheme::loop, true, 0), scheme, random);
-      if (scheme == Scheme::loop || n <= 3) {
-        EXPECT_GT(found, 0U) << name_of(scheme) << " corner of " << n;
+    const bool triangles = scheme == Scheme::loop;
+    for (std::uint32_t n = 2; n <= 13; ++n) {
+      EXPECT_GT(expect_all_hold(fan(n, triangles, true, 0, true), scheme, random), 0U)
+          << name_of(scheme) << " corner of " << n;
+    }
+    for (const std::uint32_t n : {1U, 4U, 5U, 6U, 7U, 8U, 9U, 13U}) {
+      if (triangles ? n > 4 : n > 3 || n == 1) {
+        EXPECT_GT(expect_all_hold(fan(n, triangles, true, 0), scheme, random), 0U)
+            << name_of(scheme) << " border of " << n;
       }
     }
   }

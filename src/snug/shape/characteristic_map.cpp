@@ -231,10 +231,17 @@ std::optional<CharacteristicMap> make_characteristic_map(const Kind& kind) {
 }
 
 RingDecay CharacteristicMap::decay() const {
-  RingDecay decay{kind_, corner_, eigenvalues_[conformal_ ? 0 : 1 - dominant_]};
+  RingDecay decay;
+  decay.kind = kind_;
+  decay.corner = corner_;
+  decay.least = eigenvalues_[conformal_ ? 0 : 1 - dominant_];
   if (!conformal_) {
     decay.ratio = eigenvalues_[dominant_] / decay.least;
-    decay.growth = RingDecay::Growth::of_one;
+    decay.larger = true;
+    decay.largest_row = rows_[dominant_];
+    decay.largest_column = directions_[dominant_];
+    decay.row_error = row_errors_[dominant_];
+    decay.column_off = enlarged(direction_errors_[dominant_] + 0x1p-19 * (1 + extents_[0] + extents_[1]));
   }
   decay.period = contraction_.period;
   decay.factor = contraction_.factor;

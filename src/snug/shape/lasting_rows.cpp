@@ -19,6 +19,7 @@ using Matrix = std::vector<Row>;
 // Exact entries have this many bits behind the point at most; whole rows are this large.
 constexpr double grain = 0x1p12, largest_whole = 0x1p16;
 constexpr int max_iterations = 3000, max_denominator = 400;
+constexpr double settled = 1e-10;  // that rows change by from one iteration to the next one
 // Eigenvalues that are nearer to each other count as equal.
 constexpr double same = 1e-6;
 
@@ -94,6 +95,12 @@ std::optional<Row> whole(const Row& x) {
   return std::nullopt;
 }
 
+bool is_exact(const Matrix& a) {
+  return std::all_of(a.begin(), a.end(), [](const Row& row) {
+    return std::all_of(row.begin(), row.end(), [](double x) { return grain * x == std::round(grain * x); });
+  });
+}
+
 // Of exact matrices: the rows that (A - l)^2 takes to 0. All numbers are whole ones, of at most 53 bits: no sum is rounded.
 struct ExactRows {
   Matrix rows;
@@ -101,13 +108,11 @@ struct ExactRows {
 };
 std::optional<ExactRows> exact_rows(const Matrix& a, double eigenvalue) {
   const std::size_t n = a.size();
+  if (!is_exact(a)) return std::nullopt;
   Matrix less = a;
   for (std::size_t r = 0; r < n; ++r) {
     less[r][r] -= eigenvalue;
-    for (double& x : less[r]) {
-      x *= grain;
-      if (x != std::round(x)) return std::nullopt;
-    }
+    for (double& x : less[r]) x *= grain;
   }
   Matrix square;
   for (const Row& row : less) square.push_back(times(row, less));
@@ -161,40 +166,63 @@ struct Pair {
   double eigenvalue = 0, off = 0;
 };
 
+// w A - x w in one column, as if in twice as many digits: each product and each sum leaves what it is off, and these are added up.
+double residual_at(const Row& w, double x, const Matrix& a, std::size_t column) {
+  double sum = 0, rest = 0;
+  const auto add = [&](double p, double q) {
+    const double product = p * q, total = sum + product, part = total - sum;
+    rest += std::fma(p, q, -product) + ((sum - (total - part)) + (product - part));
+    sum = total;
+  };
+  for (std::size_t r = 0; r < w.size(); ++r) add(w[r], a[r][column]);
+  add(-x, w[column]);
+  return sum + rest;
+}
+
 // By Newton's step for w A = x w, w . c = 1, in all numbers (w, x): R is about the inverse of the derivative J there, the second
 // derivative takes h to (-h_x h_w, 0). An exact pair is within r if |R F| + |1 - R J| r + |R| r^2 <= r.
 bool verify(const Matrix& a, double a_error, Pair& pair) {
   const std::size_t n = a.size();
-  Matrix j(n + 1, Row(n + 1, 0.0));
-  double square = 0;
-  for (const double x : pair.row) square += x * x;
-  for (std::size_t c = 0; c < n; ++c) {
-    for (std::size_t r = 0; r < n; ++r) j[c][r] = a[r][c] - (r == c ? pair.eigenvalue : 0);
-    j[c][n] = -pair.row[c];
-    j[n][c] = pair.row[c] / square;
+  // A step before, towards it.
+  for (const bool last : {false, true}) {
+    Matrix j(n + 1, Row(n + 1, 0.0));
+    double square = 0, sum = 0;
+    for (const double x : pair.row) {
+      square += x * x;
+      sum += std::fabs(x);
+    }
+    for (std::size_t c = 0; c < n; ++c) {
+      for (std::size_t r = 0; r < n; ++r) j[c][r] = a[r][c] - (r == c ? pair.eigenvalue : 0);
+      j[c][n] = -pair.row[c];
+      j[n][c] = pair.row[c] / square;
+    }
+    const Matrix inverted = about_inverse(j);
+    if (inverted.empty()) return false;
+    Row residual;
+    for (std::size_t c = 0; c < n; ++c) residual.push_back(residual_at(pair.row, pair.eigenvalue, a, c));
+    residual.push_back(0);  // the normalisation is what the row has
+    const Row step = times(inverted, residual);
+    if (!last) {
+      for (std::size_t c = 0; c < n; ++c) pair.row[c] -= step[c];
+      pair.eigenvalue -= step[n];
+      continue;
+    }
+    // Columns of A have sums of at most n.
+    const double of_inverse = norm(inverted), of_derivative = norm(j), gamma = gamma_bound(n + 4);
+    const auto count = static_cast<double>(n);
+    const double residual_off =
+        2 * (gamma * gamma * (sum + 1) * 4 + unit_roundoff * largest_of(residual)) + a_error * sum;
+    const double first =
+        enlarged(largest_of(step) + of_inverse * (gamma * largest_of(residual) + residual_off));
+    Matrix product;
+    for (const Row& row : inverted) product.push_back(times(row, j));
+    for (std::size_t k = 0; k <= n; ++k) product[k][k] -= 1;
+    const double slope =
+        enlarged(norm(product) + of_inverse * (gamma * of_derivative * (count + 1) + count * a_error));
+    pair.off = enlarged(4 * first);
+    if (!(first + slope * pair.off + of_inverse * pair.off * pair.off <= pair.off) || !(pair.off < 1e-9))
+      return false;
   }
-  const Matrix inverted = about_inverse(j);
-  if (inverted.empty()) return false;
-  const double of_inverse = norm(inverted), of_derivative = norm(j);
-  Row residual = times(pair.row, a);
-  double largest = 0, sum = 0;
-  for (std::size_t c = 0; c < n; ++c) {
-    residual[c] -= pair.eigenvalue * pair.row[c];
-    largest = std::max(largest, std::fabs(residual[c]));
-    sum += std::fabs(pair.row[c]);
-  }
-  // Columns of A have sums of at most n. The normalisation is what the row has.
-  const auto count = static_cast<double>(n);
-  const double rounding = gamma_bound(n + 4) * (sum + 1) * 4 + a_error * sum;
-  const double step = enlarged(of_inverse * (largest + rounding));
-  Matrix product;
-  for (const Row& row : inverted) product.push_back(times(row, j));
-  for (std::size_t k = 0; k <= n; ++k) product[k][k] -= 1;
-  const double slope = enlarged(
-      norm(product) + of_inverse * (gamma_bound(n + 4) * of_derivative * (count + 1) + count * a_error));
-  const double off = enlarged(4 * step);
-  if (!(step + slope * off + of_inverse * off * off <= off) || !(off < 1e-9)) return false;
-  pair.off = off;
   return true;
 }
 
@@ -217,14 +245,24 @@ std::optional<Pair> largest_pair(const Matrix& a, const std::vector<Pair>& befor
     for (double& value : x) value /= size;
     return size;
   };
+  // Newton's steps do the rest.
+  const auto settles = [](const Row& x, const Row& last) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!(std::fabs(x[i] - last[i]) <= settled)) return false;
+    }
+    return true;
+  };
   // The row of the eigenvalue 1.
   Row limit(n, 1.0);
   for (int i = 0; i < max_iterations; ++i) {
+    const Row last = limit;
     limit = times(limit, a);
     static_cast<void>(scale(limit));
+    if (settles(limit, last)) break;
   }
   const Row ones(n, 1.0);
   for (int i = 0; i < max_iterations; ++i) {
+    const Row last_row = pair.row, last_column = pair.column;
     remove(pair.row, dot(pair.row, ones) / dot(limit, ones), limit);
     remove(pair.column, dot(limit, pair.column) / dot(limit, ones), ones);
     for (const Pair& other : before) {
@@ -235,6 +273,7 @@ std::optional<Pair> largest_pair(const Matrix& a, const std::vector<Pair>& befor
     pair.row = times(pair.row, a);
     pair.column = times(a, pair.column);
     if (!(scale(pair.row) > 1e-12) || !(scale(pair.column) > 1e-12)) return std::nullopt;
+    if (settles(pair.row, last_row) && settles(pair.column, last_column)) break;
   }
   const double both = dot(pair.row, pair.column);
   if (!(std::fabs(both) > 1e-9)) return std::nullopt;
@@ -255,36 +294,42 @@ std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t s
   Pair first = *found;
   LastingRows result;
   const auto count = static_cast<double>(size);
-  const double error = step.max_error() + gamma_bound(2);
+  const bool exact_step = is_exact(a);
+  const double error = exact_step ? 0 : step.max_error() + gamma_bound(2);
+  const auto add_larger = [&] {
+    if (!verify(a, error, first)) return false;
+    result.rows.push_back(first.row);
+    result.error = std::max(result.error, enlarged(count * first.off));
+    result.larger = true;
+    result.ratio = around(first) / result.least;
+    return true;
+  };
+  std::optional<Pair> second;
   for (const double eigenvalue : {0.5, 0.25}) {
     if (first.eigenvalue < eigenvalue - same) continue;
     std::optional<ExactRows> exact = exact_rows(a, eigenvalue);
-    if (!exact || exact->rows.size() < 2) break;
+    if (!exact) break;
+    // Chained rows show themselves to iterations only slowly.
+    const double most = eigenvalue + (exact->links > 0 ? 0.01 : same);
+    const bool alone = first.eigenvalue < most;
+    if (exact->rows.size() < (alone ? 2 : 1)) continue;
+    if (!alone) {
+      if (!second) second = largest_pair(a, {first});
+      if (second && second->eigenvalue > most) break;
+    }
     result.rows = std::move(exact->rows);
     result.least = Interval(eigenvalue);
-    result.chained = exact->links > 0;
     result.links = exact->links;
-    // Chained rows show themselves to iterations only slowly.
-    if (first.eigenvalue < eigenvalue + (result.chained ? 0.01 : same)) return result;
-    const std::optional<Pair> second = largest_pair(a, {first});
-    if (result.chained || !verify(a, error, first)) return std::nullopt;
-    if (second && second->eigenvalue > eigenvalue + same) break;
-    result.rows.push_back(first.row);
-    result.error = enlarged(count * first.off);
-    result.ratio = around(first) / result.least;
+    if (!alone && !add_larger()) return std::nullopt;
     return result;
   }
-  std::optional<Pair> second = largest_pair(a, {first});
-  if (!second || second->eigenvalue > first.eigenvalue - same) return std::nullopt;
-  if (!verify(a, error, first) || !verify(a, error, *second)) return std::nullopt;
-  result = {{first.row, second->row},
-            enlarged(count * std::max(first.off, second->off)),
-            around(*second),
-            {1},
-            false,
-            0};
-  if (!(result.least.lower > 0)) return std::nullopt;
-  result.ratio = around(first) / result.least;
+  if (!second) second = largest_pair(a, {first});
+  if (!second || second->eigenvalue > first.eigenvalue - same || !verify(a, error, *second))
+    return std::nullopt;
+  result.rows = {second->row};
+  result.error = enlarged(count * second->off);
+  result.least = around(*second);
+  if (!(result.least.lower > 0) || !add_larger()) return std::nullopt;
   return result;
 }
 

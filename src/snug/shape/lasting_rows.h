@@ -13,11 +13,12 @@ namespace snug {
 /// next one.
 struct LastingRows {
   std::vector<std::vector<double>> rows;
-  double error = 0;       ///< upper bound of the sum of a row's errors
-  Interval least;         ///< the smaller eigenvalue
-  Interval ratio{1};      ///< of the larger one, which has one row, to it
-  bool chained = false;   ///< (L - l)^2 = 0, but not L - l
-  std::size_t links = 0;  ///< the rank of L - l, if it is chained
+  double error = 0;     ///< upper bound of the sum of a row's errors
+  Interval least;       ///< the smaller eigenvalue
+  bool larger = false;  ///< a larger one, which has one row
+  Interval ratio{1};    ///< of that to the smaller one
+  std::size_t links =
+      0;  ///< of the smaller one (L - l)^2 = 0, and this is the rank of L - l: if it is not 0, these rows are a chain
 };
 
 /// Whether nothing else lasts is not proved here. None where eigenvalues are neither 1/2 or 1/4, exactly, nor simple.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t largest_size = 120;
 constexpr unsigned max_squarings = 12;
-constexpr double enough_contraction = 0.95;
+constexpr double enough_contraction = 0.5;
 
 using Row = std::vector<double>;
 
@@ -177,6 +177,20 @@ class DecaySearch {
       const double grown =
           enlarged(2 * extent(columns_[t]) + decay.most * unseen * period / rest * period / rest);
       seen += grown * (abs_sum(lasting_.rows[t]) + lasting_.error);
+      const double row_sum = abs_sum(lasting_.rows[t]) + lasting_.error;
+      if (lasting_.links > 0 && !(lasting_.larger && t + 1 == m)) {
+        Row moved = images[t];
+        for (std::size_t i = 0; i < size_; ++i) moved[i] = moved[i] / least - columns_[t][i];
+        decay.chain_seen = enlarged(
+            decay.chain_seen + 2 * (extent(moved) + unseen * (1 + 8 * decay.most * period / rest)) * row_sum);
+      }
+      // The larger eigenvalue's row is the last one. Of its column what W does not see is the sum of B^i r / q^(i + 1).
+      if (!lasting_.larger || t + 1 < m) continue;
+      decay.largest_row = lasting_.rows[t];
+      decay.largest_column = columns_[t];
+      decay.row_error = lasting_.error;
+      decay.column_off = enlarged(2 * decay.most * unseen * period / rest +
+                                  2 * static_cast<double>(m) * mixing * (1 + widest));
     }
     decay.seen = enlarged(2 * seen);
     return std::isfinite(decay.seen);
@@ -201,10 +215,13 @@ std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicM
     const Stencils step = child.stencils();
     const std::optional<LastingRows> lasting = find_lasting_rows(step, kind.control_count());
     if (!lasting) return std::nullopt;
-    RingDecay decay{&kind, corner, lasting->least, lasting->ratio};
-    if (lasting->chained || lasting->ratio.lower > 1) {
-      decay.growth = lasting->links > 1 ? RingDecay::Growth::of_some : RingDecay::Growth::of_one;
-    }
+    RingDecay decay;
+    decay.kind = &kind;
+    decay.corner = corner;
+    decay.least = lasting->least;
+    decay.larger = lasting->larger;
+    decay.ratio = lasting->ratio;
+    decay.links = lasting->links;
     if (!DecaySearch(step, kind.corner_limits().row(corner), *lasting).find(decay)) return std::nullopt;
     return decay;
   }

@@ -15,15 +15,21 @@ class CharacteristicMap;
 /// tangents or others, and what W does not see shrinks faster, in extents (largest - least) / 2.
 /// Source:    derivations/self_contact.md, "At extraordinary corners".
 struct RingDecay {
-  const Kind* kind;
-  std::size_t corner;  ///< of the kind
-  Interval least;      ///< the least eigenvalue of L
-  Interval ratio{1};   ///< of the largest one to it
-  enum class Growth : std::uint8_t { none, of_one, of_some };
-  Growth growth = Growth::none;  ///< beside powers of the least one: of one row of W, or more
+  const Kind* kind = nullptr;
+  std::size_t corner = 0;                           ///< of the kind
+  Interval least{1};                                ///< the least eigenvalue of L
+  bool larger = false;                              ///< a larger one, of one row of W, beside the least one
+  Interval ratio{1};                                ///< of that one to the least one
+  std::vector<double> largest_row, largest_column;  ///< about that row of W, and that column of V, W V = 1
+  double row_error = 0,
+         column_off = 0;  ///< of the row, in sum; of the column, in extents, and as what other rows see of it
+  std::size_t links =
+      0;  ///< nets grow as j times the least one's powers, by so many rows of W: a chain (LastingRows)
   /// Of what W does not see, over powers of the least eigenvalue: at most `most` times as large, and `factor` after `period` steps.
   std::size_t period = 1;
   double factor = 1, most = 1;
+  double chain_seen =
+      0;  ///< of all that W sees in a chain: what is added at each step, at most so many times as large
   double seen = 0;  ///< of all that W sees: at most so many times as large, times powers of the ratio
 };
 

@@ -11,145 +11,16 @@
 #include <snug/geometry/bernstein.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/scheme/bezier.h>
-#include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/corner_rings.h>
-#include <snug/shape/point2.h>
+#include <snug/shape/flat_patch.h>
+#include <snug/shape/left_turn.h>
 #include <support/direction.h>
 
 namespace snug {
 namespace {
 
-// Levels that a piece is split to bound its coefficients.
-constexpr unsigned polynomial_levels = 2, border_levels = 3, decay_levels = 6;
-// Of a net that stands for all further rings of a map that is conformal, against its size: more would hardly do.
-constexpr double max_net_share = 0.02;
-// Rings that are looked at one by one.
-constexpr std::size_t max_rings = 300;
-
-double largest_of(Point2 a) { return std::max(std::fabs(a.x), std::fabs(a.y)); }
-
-using BezierPoints = std::array<Point2, bezier_count(max_degree)>;
-
-// One of the polynomials of a patch in the plane.
-struct Polynomial {
-  std::size_t degree;
-  BezierPoints points;
-  double error;  // of each number
-};
-
-Polynomial polynomial_of(const Patch& patch, std::size_t part) {
-  const BezierRows& form = patch.kind->form();
-  const std::size_t count = bezier_count(form.degree);
-  Polynomial result{form.degree, {}, form.rows.result_error(patch.largest, patch.error)};
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vector3 p = form.rows.apply<Vector3>(part * count + i, patch.points);
-    result.points[i] = {p.x, p.y};
-  }
-  return result;
-}
-
-// Differences along two edges of the parameters' triangle, by Bezier points.
-struct FlatDerivatives {
-  std::size_t count = 0;
-  std::array<Point2, bezier_count(max_degree - 1)> u, v;
-  double largest = 0;
-  double error = 0;  // of each number
-
-  explicit FlatDerivatives(const Polynomial& of) {
-    for (std::size_t j = 0; j < of.degree; ++j) {
-      for (std::size_t i = 0; i + j < of.degree; ++i) {
-        const Point2 at = of.points[bezier_index(of.degree, i, j)];
-        u[count] = of.points[bezier_index(of.degree, i + 1, j)] - at;
-        v[count] = of.points[bezier_index(of.degree, i, j + 1)] - at;
-        largest = std::max({largest, largest_of(u[count]), largest_of(v[count])});
-        ++count;
-      }
-    }
-    error = enlarged(2 * of.error + unit_roundoff * largest);
-  }
-};
-
-// Are all coefficients of the determinant of the one's u and the other one's v, and the other way round, positive?
-bool turns_left(const FlatDerivatives& d, const FlatDerivatives& e) {
-  const double limit = enlarged(8 * (d.error * e.largest + e.error * d.largest + d.error * e.error) +
-                                gamma_bound(8) * 8 * d.largest * e.largest);
-  for (std::size_t k = 0; k < d.count; ++k) {
-    for (std::size_t l = 0; l <= k; ++l) {
-      const double both = cross(d.u[k], e.v[l]) + cross(d.u[l], e.v[k]);
-      if (!(both + (cross(e.u[k], d.v[l]) + cross(e.u[l], d.v[k])) > limit)) return false;
-    }
-  }
-  return true;
-}
-
-const RingDecay* decay_of(const Kind& kind) {
-  return kind.polynomial() ? nullptr : asymptotics_of(kind).ring_decay();
-}
-
-std::size_t corner_of(const RingDecay& tip, const Patch& patch) { return (tip.corner + patch.first) % 3; }
-
-// Is the determinant positive all over a patch in the plane?
-class LeftTurn {
- public:
-  [[nodiscard]] static bool everywhere(const Patch& patch) {
-    return LeftTurn{}.holds(patch, nullptr, patch.kind->polynomial() ? 1 : decay_levels);
-  }
-
- private:
-  // With `growth`: of the patch and of any number >= 0 of times that.
-  bool holds(const Patch& patch, const Patch* growth, unsigned levels) {
-    if (patch.kind->polynomial() && coefficients_hold(patch, growth)) return true;
-    if (levels == 0) return false;
-    if (const RingDecay* tip = decay_of(*patch.kind)) {
-      return growth == nullptr && tip_holds(*tip, patch, levels - 1);
-    }
-    for (unsigned child = 0; child < 4; ++child) {
-      if (!child_holds(patch, growth, child, levels - 1)) return false;
-    }
-    return true;
-  }
-
-  bool child_holds(const Patch& patch, const Patch* growth, unsigned child, unsigned levels) {
-    const Patch piece = split(patch, child);
-    const std::optional<Patch> more = growth != nullptr ? std::optional(split(*growth, child)) : std::nullopt;
-    if (piece.kind->polynomial()) levels = std::min(levels, polynomial_levels);
-    return holds(piece, more ? &*more : nullptr, levels);
-  }
-
-  bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels) {
-    const auto corner = static_cast<unsigned>(corner_of(tip, patch));
-    const auto ring_holds = [&](const Patch& net, const Patch* growth) {
-      for (unsigned child = 0; child < 4; ++child) {
-        if (child != corner && !child_holds(net, growth, child, levels)) return false;
-      }
-      return true;
-    };
-    const CornerRings rings(tip, patch);
-    growth_turns_ = tip.growth == RingDecay::Growth::of_some;
-    for (std::size_t ring = 0; ring < std::min(rings.count(), max_rings); ++ring) {
-      const auto [net, growth] = rings.all_further(ring);
-      if ((growth || net.error < max_net_share * net.largest) && ring_holds(net, growth ? &*growth : nullptr))
-        return true;
-      if (!ring_holds(rings.net(ring), nullptr)) return false;
-    }
-    return false;
-  }
-
-  bool coefficients_hold(const Patch& patch, const Patch* growth) const {
-    for (std::size_t part = 0; part < patch.kind->form().parts; ++part) {
-      const FlatDerivatives d(polynomial_of(patch, part));
-      if (!turns_left(d, d)) return false;
-      if (growth == nullptr) continue;
-      const FlatDerivatives more(polynomial_of(*growth, part));
-      if (!turns_left(d, more) || (growth_turns_ && !turns_left(more, more))) return false;
-    }
-    return true;
-  }
-
-  // Is the determinant of the growth alone not known to be 0, as where all its derivatives are along one vector?
-  bool growth_turns_ = false;
-};
+// Levels that an edge is split to bound its coefficients.
+constexpr unsigned border_levels = 3;
 
 // Does a closed curve turn left around a point, all along, and only once? It is added edge by edge.
 class TurnAround {
@@ -159,13 +30,13 @@ class TurnAround {
   [[nodiscard]] bool add(const Patch& patch, unsigned edge, Point2 shift, double error) {
     shift_ = shift;
     error_ = error;
-    return add(patch, edge, decay_levels);
+    return add(patch, edge, corner_levels);
   }
   // visit(from, to) of each pair of Bezier points next to each other along an edge.
   // Requires:  a polynomial.
   template <class Visit>
   static void each_step(const Patch& patch, unsigned edge, const Visit& visit) {
-    each_curve(patch, edge, [&](const Curve& curve) {
+    each_curve(patch, edge, [&](const FlatCurve& curve) {
       for (std::size_t t = 0; t < curve.degree; ++t) visit(curve.points[t], curve.points[t + 1]);
       return true;
     });
@@ -174,19 +45,16 @@ class TurnAround {
   [[nodiscard]] bool once() const { return angle_ < 3 * std::numbers::pi; }
 
  private:
-  struct Curve {
-    std::size_t degree;
-    std::array<Point2, max_degree + 1> points;
-    double error;
-  };
-
   bool add(const Patch& patch, unsigned edge, unsigned levels) {
     if (patch.kind->polynomial()) return add_polynomial(patch, edge, border_levels);
     if (levels == 0) return false;
     if (const RingDecay* tip = decay_of(*patch.kind)) {
-      const auto corner = static_cast<unsigned>(corner_of(*tip, patch));
+      const unsigned corner = corner_of(*tip, patch);
       if (corner == edge || corner == (edge + 1) % 3) {
-        if (is_sharp_curve(patch, corner, edge)) return add_sharp_curve(patch, corner, edge);
+        if (ends_fan(patch, corner, edge)) {
+          const std::optional<FlatCurve> curve = curve_at_end_of_fan(patch, corner, edge);
+          return curve && add_split(moved(*curve), border_levels);
+        }
         return add_rings(*tip, patch, corner, edge, levels - 1);
       }
     }
@@ -195,32 +63,14 @@ class TurnAround {
 
   bool add_polynomial(const Patch& patch, unsigned edge, unsigned levels) {
     const double angle = angle_;
-    if (each_curve(patch, edge, [&](const Curve& curve) { return add_curve(moved(curve)); })) return true;
+    if (each_curve(patch, edge, [&](const FlatCurve& curve) { return add_curve(moved(curve)); })) return true;
     angle_ = angle;
     if (levels == 0) return false;
     return add_polynomial(split(patch, edge), edge, levels - 1) &&
            add_polynomial(split(patch, (edge + 1) % 3), edge, levels - 1);
   }
 
-  // Of a patch of two parts, 0, 1, m and m, 1, 2, the edge 20 runs through m.
-  template <class Visit>
-  static bool each_curve(const Patch& patch, unsigned edge, const Visit& visit) {
-    const std::size_t own = patch.to_kind(edge), parts = patch.kind->form().parts;
-    const auto part_holds = [&](std::size_t part) {
-      const Polynomial all = polynomial_of(patch, part);
-      Curve curve{all.degree, {}, all.error};
-      for (std::size_t t = 0; t <= all.degree; ++t) {
-        curve.points[t] = all.points[own == 0   ? bezier_index(all.degree, t, 0)
-                                     : own == 1 ? bezier_index(all.degree, all.degree - t, t)
-                                                : bezier_index(all.degree, 0, all.degree - t)];
-      }
-      return visit(curve);
-    };
-    if (parts == 1 || own == 0) return part_holds(0);
-    return part_holds(1) && (own == 1 || part_holds(0));
-  }
-
-  [[nodiscard]] Curve moved(Curve curve) const {
+  [[nodiscard]] FlatCurve moved(FlatCurve curve) const {
     double largest = 0;
     for (std::size_t t = 0; t <= curve.degree; ++t) {
       curve.points[t] = curve.points[t] + shift_;
@@ -231,7 +81,7 @@ class TurnAround {
   }
 
   // The coefficients of det(f, f'), and that the angle is less than pi.
-  bool add_curve(const Curve& f) {
+  bool add_curve(const FlatCurve& f) {
     const std::size_t d = f.degree;
     double largest = 0, widest = 0;
     for (std::size_t i = 0; i <= d; ++i) {
@@ -266,46 +116,12 @@ class TurnAround {
     return true;
   }
 
-  // Is it the end of a fan at an extraordinary corner? There it is one polynomial: of a boundary, or of a crease.
-  static bool is_sharp_curve(const Patch& patch, unsigned corner, unsigned edge) {
-    const CornerFan& fan = patch.kind->corner(patch.to_kind(corner));
-    return !fan.closed && !fan.odd && is_face_edge(patch, edge) &&
-           (corner == edge ? fan.before : fan.after) == 0;
-  }
-  // Not the line through a quad that its halves share.
-  static bool is_face_edge(const Patch& patch, unsigned edge) {
-    return patch.kind->rules().triangular() || patch.to_kind(edge) != 2;
-  }
-
-  // Continues its half that is away from the corner.
-  bool add_sharp_curve(const Patch& patch, unsigned corner, unsigned edge) {
-    const unsigned far = corner == edge ? (edge + 1) % 3 : edge;
-    const Patch half = split(patch, far);
-    if (!half.kind->polynomial() || half.kind->form().parts != 1) return false;
-    return each_curve(half, edge, [&](Curve curve) {
-      if (corner == edge) std::reverse(curve.points.begin(), curve.points.begin() + curve.degree + 1);
-      // Point k of the whole curve from the far corner is the half's polar form at 0 and 2.
-      std::array<Point2, max_degree + 1> row = curve.points;
-      for (std::size_t k = 1; k <= curve.degree; ++k) {
-        for (std::size_t t = curve.degree; t >= k; --t) row[t] = 2 * row[t] - row[t - 1];
-      }
-      double largest = 0;
-      for (std::size_t t = 0; t <= curve.degree; ++t)
-        largest = std::max(largest, largest_of(curve.points[t]));
-      const double grown = std::pow(3.0, static_cast<double>(curve.degree));
-      curve.error = enlarged(grown * (curve.error + gamma_bound(3 * max_degree) * largest));
-      curve.points = row;
-      if (corner == edge) std::reverse(curve.points.begin(), curve.points.begin() + curve.degree + 1);
-      return add_split(moved(curve), border_levels);
-    });
-  }
-
-  bool add_split(const Curve& curve, unsigned levels) {
+  bool add_split(const FlatCurve& curve, unsigned levels) {
     const double angle = angle_;
     if (add_curve(curve)) return true;
     angle_ = angle;
     if (levels == 0) return false;
-    Curve first = curve, second = curve;
+    FlatCurve first = curve, second = curve;
     const std::size_t d = curve.degree;
     for (std::size_t k = 1; k <= d; ++k) {
       for (std::size_t t = 0; t + k <= d; ++t)
@@ -322,10 +138,10 @@ class TurnAround {
   bool add_rings(const RingDecay& tip, Patch at, unsigned corner, unsigned edge, unsigned levels) {
     const CornerRings rings(tip, at);
     const unsigned far = corner == edge ? (edge + 1) % 3 : edge;
-    for (std::size_t ring = 0; ring < std::min(rings.count(), max_rings); ++ring) {
-      const auto [net, growth] = rings.all_further(ring);
-      if (add_further(at, split(net, far), growth ? std::optional(split(*growth, far)) : std::nullopt, edge))
-        return true;
+    for (std::size_t ring = 0; ring < std::min(rings.count(), max_single_rings); ++ring) {
+      std::vector<Patch> nets;
+      for (const Patch& net : rings.all_further(ring)) nets.push_back(split(net, far));
+      if (add_further(at, nets, edge, rings.axes(ring), rings.axis_off())) return true;
       if (!add(split(at, far), edge, levels)) return false;
       at = split(at, corner);
       at.path = {};
@@ -333,32 +149,41 @@ class TurnAround {
     return false;
   }
 
-  bool add_further(const Patch& at, const Patch& net, const std::optional<Patch>& growth, unsigned edge) {
-    if (!net.kind->polynomial()) return false;
-    std::vector<Point2> hull;
-    double largest = 0;
+  // The nets along these axes.
+  bool add_further(const Patch& at, std::span<const Patch> nets, unsigned edge,
+                   const std::array<Point2, 2>& axes, double axis_off) {
+    if (!nets[0].kind->polynomial()) return false;
+    std::vector<Point2> hull, moved;
+    double largest = 0, size = 0, weight = 0;
+    for (const Point2& axis : axes) weight = std::max(weight, std::fabs(axis.x) + std::fabs(axis.y));
     for (const Vector3& p : at.points) {
       hull.push_back({p.x + shift_.x, p.y + shift_.y});
-      largest = std::max(largest, largest_of(hull.back()));
+      moved.push_back({dot(axes[0], hull.back()), dot(axes[1], hull.back())});
+      size = std::max(size, largest_of(hull.back()));
+      largest = std::max(largest, largest_of(moved.back()));
     }
-    const double error = enlarged(at.error + error_ + unit_roundoff * largest);
-    const auto turns = [&](const Curve& curve) {
+    const double hull_error = enlarged(at.error + error_ + unit_roundoff * size);
+    const double error =
+        enlarged(weight * (1 + 2 * axis_off) * (hull_error + (2 * axis_off + gamma_bound(3)) * size));
+    const auto turns = [&](const FlatCurve& curve) {
       for (std::size_t t = 0; t < curve.degree; ++t) {
         const Point2 step = curve.points[t + 1] - curve.points[t];
         const double step_error = 2 * curve.error + unit_roundoff * largest_of(step);
         const double off = enlarged(2 * (largest * step_error + error * (largest_of(step) + step_error)) +
                                     gamma_bound(3) * 2 * largest * largest_of(step));
-        for (const Point2& p : hull) {
+        for (const Point2& p : moved) {
           if (!(cross(p, step) > off)) return false;
         }
       }
       return true;
     };
-    if (!each_curve(net, edge, turns) || (growth && !each_curve(*growth, edge, turns))) return false;
+    for (const Patch& net : nets) {
+      if (!each_curve(net, edge, turns)) return false;
+    }
     const std::array<Vector3, 3> ends = limit_corners(at);
     const auto end = [&](unsigned k) { return Point2{ends[k].x, ends[k].y} + shift_; };
     return add_angle(end(edge), end((edge + 1) % 3), hull,
-                     enlarged(error + at.kind->corner_limits().result_error(at.largest, at.error)));
+                     enlarged(hull_error + at.kind->corner_limits().result_error(at.largest, at.error)));
   }
 
   Point2 shift_;
@@ -406,7 +231,7 @@ class StarCheck {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
     if (!make_frame()) return false;
     for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_));
-    return std::all_of(flat_.begin(), flat_.end(), LeftTurn::everywhere) && border_turns_once();
+    return std::all_of(flat_.begin(), flat_.end(), turns_left_everywhere) && border_turns_once();
   }
 
  private:
