@@ -239,18 +239,12 @@ TEST(self, folds_are_what_they_are_made_to_be) {
             const SelfContact found = self_contact(
                 Surface(testing::control_mesh(fan.mesh), {.scheme = scheme}), {}, {.max_splits = 10'000});
             ++counts[std::string(bend.name) + ": " + name_of(found.verdict)];
-            // A crease inwards makes a corner of a vertex on the border, and one that ends inside a dart; the tangents
-            // across both sides of a crease may not both shrink less than that along it. Three triangles are all too
-            // flat here.
-            const std::uint32_t side = boundary || sharpness == 0 ? n : n / 2;
-            const bool through = fan.axis.size() > 4;
-            const bool known = boundary         ? sharpness == 0 && n <= (triangles ? 5 : 3)
-                               : sharpness < 10 ? n >= 4 && n <= 9
-                                                : through && side >= 2 && side <= (triangles ? 3 : 2);
+            // Three triangles are too flat here; wide darts of quads tend to their limit slowly.
+            const bool known = boundary || (triangles ? n > 3 : sharpness < 10 || n < 11);
             switch (bend.what) {
               case Bend::clear:
                 EXPECT_NE(found.verdict, SelfVerdict::intersecting) << name;
-                if (known && bend.first <= 60) {
+                if (known && bend.first <= 120) {
                   EXPECT_EQ(found.verdict, SelfVerdict::clear) << name;
                 }
                 break;

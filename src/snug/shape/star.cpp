@@ -235,17 +235,40 @@ class StarCheck {
   }
 
  private:
+  // A direction that is on the side of each normal, if the first one is hardly: towards the one that is farthest off, again and again.
+  static Vector3 seen_by_all(const Vector3& first, const std::vector<Vector3>& normals) {
+    constexpr double enough = 0.3;
+    constexpr int steps = 40;
+    Vector3 at = first;
+    for (int i = 0; i < steps; ++i) {
+      double least = INFINITY;
+      Vector3 farthest;
+      for (const Vector3& normal : normals) {
+        const Vector3 unit = normalized(normal);
+        const double along = dot(at, unit) / length(at);
+        if (along < least) {
+          least = along;
+          farthest = unit;
+        }
+      }
+      if (i == 0 && least > enough) return first;
+      at = at + (1.0 / (i + 2)) * (farthest - at);
+    }
+    return normalized(at);
+  }
   // Along the mean normal; scaled so that the ring is about as long as wide.
   bool make_frame() {
     Vector3 normal;
+    std::vector<Vector3> normals;
     for (const StarSector& sector : sectors_) {
       const auto [a, b] = spokes_of(sector);
       if (spokes_.empty()) spokes_.push_back(a);
       spokes_.push_back(b);
-      normal = normal + cross(a, b);
+      normals.push_back(cross(a, b));
+      normal = normal + normals.back();
     }
     if (closed_) spokes_.pop_back();
-    normal = normalized(normal);
+    normal = seen_by_all(normalized(normal), normals);
     if (normal == Vector3{}) return false;
     const Vector3 other = std::fabs(normal.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
     const Vector3 x = normalized(cross(other, normal)), y = cross(normal, x);
