@@ -294,23 +294,34 @@ class SelfSearch {
     return next;
   }
 
-  // Returns the pairs that are neither apart nor cross, as far as `most` tests of each can tell.
+  // Returns the pairs that are neither apart nor cross, as far as `most` tests of each can tell. Most need few: what these leave of the
+  // budget is for the others.
   std::vector<NamePair> compare_far(const std::vector<NamePair>& pairs, std::uint64_t most = max_tests) {
-    if (pairs.empty()) return {};
-    const std::uint64_t each = std::min(most, budget_ / pairs.size());
-    std::vector<Found> found(pairs.size());
-    for_each_with_pieces(model_, pairs.size(), run_.threads, monitor_, [&](PieceCache& kept, std::size_t i) {
-      found[i] = PairComparison(kept, std::max<std::uint64_t>(each, 1)).run(pairs[i]);
-    });
-    std::vector<NamePair> unknown;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Found& one = found[i];
-      answer_.pair_tests += one.tests;
-      spend(one.tests);
-      keep(one);
-      if (one.what != Found::What::unknown) continue;
-      unknown.push_back(pairs[i]);
-      if (each < most && one.tests >= each) budget_spent_ = true;
+    std::vector<NamePair> open = pairs, unknown;
+    for (std::uint64_t before = 0; !open.empty();) {
+      const std::uint64_t each = std::max<std::uint64_t>(std::min(most, budget_ / open.size()), 1);
+      const bool last = each == most || each < 2 * before;
+      std::vector<Found> found(open.size());
+      for_each_with_pieces(model_, open.size(), run_.threads, monitor_, [&](PieceCache& kept, std::size_t i) {
+        found[i] = PairComparison(kept, each).run(open[i]);
+      });
+      std::vector<NamePair> left;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        const Found& one = found[i];
+        answer_.pair_tests += one.tests;
+        spend(one.tests);
+        const bool short_of_tests = one.what == Found::What::unknown && one.tests >= each && each < most;
+        if (short_of_tests && !last) {
+          left.push_back(open[i]);
+          continue;
+        }
+        keep(one);
+        if (one.what == Found::What::unknown) unknown.push_back(open[i]);
+        budget_spent_ = budget_spent_ || short_of_tests;
+      }
+      open = std::move(left);
+      before = each;
+      if (!contacts_.empty()) break;
     }
     return unknown;
   }
