@@ -40,6 +40,7 @@ RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector
   first.off += take_off_largest(first);
   first.largest = largest_of(first.values);
   all_off_ = growing_off_ = first.off;
+  levels_.reserve(64);
   levels_.push_back(std::move(first));
   std::vector<double> parts;
   while (parts.size() < max_rings) {
@@ -104,28 +105,39 @@ void RingValues::descend() {
 }
 
 RingValues::Level RingValues::difference(std::size_t level, unsigned order) const {
-  if (order == 0) return levels_[level];
-  const Level from = difference(level, order - 1), to = difference(level + 1, order - 1);
+  if (order == 1) return step_between(levels_[level], levels_[level + 1]);
+  return step_between(difference(level, order - 1), difference(level + 1, order - 1));
+}
+
+RingValues::Level RingValues::step_between(const Level& from, const Level& to) const {
   Level step;
-  for (std::size_t i = 0; i < from.values.size(); ++i) step.values.push_back(to.values[i] - from.values[i]);
+  step.values.resize(from.values.size());
+  for (std::size_t i = 0; i < step.values.size(); ++i) step.values[i] = to.values[i] - from.values[i];
   centre(step.values);
   step.largest = largest_of(step.values);
   step.off = enlarged(from.off + to.off + (gamma_bound(3) + least_off_) * (from.largest + to.largest));
   return step;
 }
 
-// The extent of a difference, less what the one before leaves to it: this shrinks.
-RingValues::Lasting RingValues::lasting(std::size_t level) const {
+// The extent of a difference, less what the one before leaves to it: this shrinks. `next_`: the one that was next.
+RingValues::Lasting RingValues::lasting(std::size_t level) {
   const unsigned order = order_of(*decay_);
-  const Level step = difference(level, order);
-  if (!larger_) return {extent(step.values), step.off};
-  const Level next = difference(level + 1, order);
+  if (!larger_) {
+    const Level step = difference(level, order);
+    return {extent(step.values), step.off};
+  }
+  const Level step = level > 0 ? std::move(next_) : difference(level, order);
+  next_ = difference(level + 1, order);
   const double ratio = middle(decay_->ratio);
-  std::vector<double> rest(step.values.size());
-  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = next.values[i] - ratio * step.values[i];
+  double least = INFINITY, most = -INFINITY;
+  for (std::size_t i = 0; i < step.values.size(); ++i) {
+    const double rest = next_.values[i] - ratio * step.values[i];
+    least = std::min(least, rest);
+    most = std::max(most, rest);
+  }
   const double of_ratio = (decay_->ratio.upper - decay_->ratio.lower + gamma_bound(2) * ratio) * step.largest;
-  return {extent(rest),
-          enlarged(next.off + decay_->ratio.upper * step.off + of_ratio + gamma_bound(2) * next.largest)};
+  return {enlarged(0.5 * (most - least)),
+          enlarged(next_.off + decay_->ratio.upper * step.off + of_ratio + gamma_bound(2) * next_.largest)};
 }
 
 // Parts beyond the last ones shrink by the factor of a period.
@@ -204,7 +216,7 @@ std::array<Point2, 2> CornerRings::axes(std::size_t level) const {
   // By powers of two, so that both coordinates are about as large.
   std::array<Point2, 2> axes = axes_;
   for (std::size_t c = 0; c < 2; ++c) {
-    const double largest = values_[c].difference(level, 0).largest;
+    const double largest = values_[c].level(level).largest;
     if (largest > 0x1p-500 && largest < 0x1p500) axes[c] = std::ldexp(1.0, -std::ilogb(largest)) * axes[c];
   }
   return axes;
@@ -216,7 +228,7 @@ Patch CornerRings::net_of(std::size_t level, unsigned order, double RingValues::
   net.first = first_;
   const std::array<Point2, 2> axes = this->axes(level);
   for (std::size_t c = 0; c < 2; ++c) {
-    const RingValues::Level own = values_[c].difference(level, order);
+    const RingValues::Level own = order == 0 ? values_[c].level(level) : values_[c].difference(level, order);
     const double scale = axes_[c].x != 0 ? axes[c].x / axes_[c].x : axes[c].y / axes_[c].y;
     net.points.resize(own.values.size());
     // The first coordinate has nothing of the larger eigenvalue.

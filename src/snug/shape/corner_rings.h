@@ -22,6 +22,7 @@ class RingValues {
     std::vector<double> values;
     double off = 0, largest = 0;
   };
+  [[nodiscard]] const Level& level(std::size_t level) const { return levels_[level]; }
   /// From a level to the next one; of a higher order, from such a step to the next one.
   [[nodiscard]] Level difference(std::size_t level, unsigned order) const;
   /// How many levels it is of use to look at; at least one.
@@ -42,7 +43,8 @@ class RingValues {
   struct Lasting {
     double extent, off;
   };
-  [[nodiscard]] Lasting lasting(std::size_t level) const;
+  [[nodiscard]] Lasting lasting(std::size_t level);
+  [[nodiscard]] Level step_between(const Level& from, const Level& to) const;
   void add_up(std::vector<double> parts);
 
   const RingDecay* decay_;
@@ -50,6 +52,7 @@ class RingValues {
   bool larger_, without_largest_;  // do they have a larger part; or is there none, where others have it?
   double least_off_ = 0;           // of that eigenvalue, relative to it
   std::vector<Level> levels_;
+  Level next_;
   double all_off_ = 0, growing_off_ = 0;  // sums of what each step was off, as it is and grown
   double largest_off_ = 0;                // of a level, what the largest row may see
   std::vector<Sums> further_;             // of each level, and, last, of those beyond

@@ -15,6 +15,8 @@ namespace {
 constexpr unsigned polynomial_levels = 2;
 // Of a net that stands for all further rings of a map that is conformal, against its size: more would hardly do.
 constexpr double max_net_share = 0.02;
+// A net, and its growths.
+constexpr std::size_t max_nets = 3;
 
 // An edge or a corner of a triangle.
 struct Side {
@@ -38,15 +40,22 @@ struct FlatDerivatives {
         const Point2 at = of.points[bezier_index(of.degree, i, j)];
         u[count] = of.points[bezier_index(of.degree, i + 1, j)] - at;
         v[count] = of.points[bezier_index(of.degree, i, j + 1)] - at;
-        const std::size_t k = of.degree - 1 - i - j;
-        const unsigned on_edges = (j == 0 ? 1 : 0) | (k == 0 ? 2 : 0) | (i == 0 ? 4 : 0);
-        const unsigned on_corners = (i + j == 0 ? 1 : 0) | (j + k == 0 ? 2 : 0) | (i + k == 0 ? 4 : 0);
-        sides[count] = static_cast<std::uint8_t>(on_edges | on_corners << 3);
         largest = std::max({largest, largest_of(u[count]), largest_of(v[count])});
         ++count;
       }
     }
     error = enlarged(2 * of.error + unit_roundoff * largest);
+  }
+  void find_sides(std::size_t degree) {
+    std::size_t place = 0;
+    for (std::size_t j = 0; j < degree; ++j) {
+      for (std::size_t i = 0; i + j < degree; ++i, ++place) {
+        const std::size_t k = degree - 1 - i - j;
+        const unsigned on_edges = (j == 0 ? 1 : 0) | (k == 0 ? 2 : 0) | (i == 0 ? 4 : 0);
+        const unsigned on_corners = (i + j == 0 ? 1 : 0) | (j + k == 0 ? 2 : 0) | (i + k == 0 ? 4 : 0);
+        sides[place] = static_cast<std::uint8_t>(on_edges | on_corners << 3);
+      }
+    }
   }
   // From an edge of the kind, or a corner, into the patch.
   [[nodiscard]] Point2 into(std::size_t k, Side from) const {
@@ -62,17 +71,21 @@ struct Coefficients {
 };
 
 // Are coefficients of the determinant of the one's u and the other one's v, and the other way round, positive?
+template <bool all>
 bool turns_left(const FlatDerivatives& d, const FlatDerivatives& e, Coefficients which) {
   const double limit = enlarged(8 * (d.error * e.largest + e.error * d.largest + d.error * e.error) +
                                 gamma_bound(8) * 8 * d.largest * e.largest);
   for (std::size_t k = 0; k < d.count; ++k) {
     for (std::size_t l = 0; l <= k; ++l) {
-      if (((d.sides[k] & d.sides[l] & which.side) != 0) != which.on_it) continue;
+      if (!all && ((d.sides[k] & d.sides[l] & which.side) != 0) != which.on_it) continue;
       const double both = cross(d.u[k], e.v[l]) + cross(d.u[l], e.v[k]);
       if (!(both + (cross(e.u[k], d.v[l]) + cross(e.u[l], d.v[k])) > limit)) return false;
     }
   }
   return true;
+}
+bool turns_left(const FlatDerivatives& d, const FlatDerivatives& e, Coefficients which) {
+  return which.side == 0 ? turns_left<true>(d, e, which) : turns_left<false>(d, e, which);
 }
 
 // The end of a fan at an extraordinary corner: the Bezier points of the curve's derivative from there to some ring.
@@ -171,10 +184,10 @@ class LeftTurn {
 
  private:
   bool child_holds(std::span<const Patch> nets, unsigned child, unsigned levels, const AtEnd& at) {
-    std::vector<Patch> pieces;
-    for (const Patch& net : nets) pieces.push_back(split(net, child));
+    std::array<Patch, max_nets> pieces;
+    for (std::size_t n = 0; n < nets.size(); ++n) split(nets[n], child, pieces[n]);
     if (pieces[0].kind->polynomial()) levels = std::min(levels, polynomial_levels);
-    return holds(pieces, levels, at.of(child));
+    return holds(std::span(pieces).first(nets.size()), levels, at.of(child));
   }
 
   bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels) {
@@ -215,9 +228,16 @@ class LeftTurn {
   bool coefficients_hold(std::span<const Patch> nets, const AtEnd& at) const {
     const BezierRows& form = nets[0].kind->form();
     for (std::size_t part = 0; part < form.parts; ++part) {
+      if (nets.size() == 1 && at.end == nullptr) {
+        const FlatDerivatives d(polynomial_of(nets[0], part));
+        if (!turns_left(d, d, {})) return false;
+        continue;
+      }
       std::vector<FlatDerivatives> d;
-      d.reserve(nets.size());
-      for (const Patch& net : nets) d.emplace_back(polynomial_of(net, part));
+      for (const Patch& net : nets) {
+        d.emplace_back(polynomial_of(net, part));
+        d.back().find_sides(form.degree);
+      }
       if (at.end == nullptr || form.parts > 1) {
         if (!all_turn_left(d, {})) return false;
         continue;
