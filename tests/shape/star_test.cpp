@@ -666,6 +666,49 @@ TEST(star, of_a_wide_fan_that_turns_over_in_a_plane_is_never_injective) {
   EXPECT_GT(turned, static_cast<int>(testing::fewer(60)));
 }
 
+// A crease between two wide sides, pulled in to nearly nothing, one way or the other: then it turns over, where nothing else does. On the
+// border of a star its border would tell.
+TEST(star, whose_crease_alone_turns_over_is_never_injective) {
+  int injective = 0, turned = 0;
+  for (const bool triangles : {true, false}) {
+    for (std::uint32_t side = triangles ? 6 : 4; side <= (triangles ? 9 : 7); ++side) {
+      const std::uint32_t n = 2 * side, around = triangles ? n : 2 * n;
+      for (const bool corner : {true, false}) {
+        for (const double near : {0.5, 0.1, 0.01, 1e-3}) {
+          for (const auto& [first, last] : {std::pair{1, 1}, {-1, 1}, {-1, -1}}) {
+            for (const bool all_along : {true, false}) {
+              const auto flat = [](double, double) { return 0.0; };
+              auto mesh = triangles ? disc(n, 1, flat) : quad_disc(n, flat);
+              if (corner) mesh.corners.push_back({0, 10});
+              for (std::uint32_t ring = 0; ring < 3; ++ring) {
+                for (const std::uint32_t place : {0U, around / 2}) {
+                  const std::uint32_t here = 1 + ring * around + place;
+                  mesh.creases.push_back({ring == 0 ? 0 : here - around, here, 10});
+                  if (ring > 0 && !all_along) continue;
+                  for (std::size_t k = 0; k < 2; ++k)
+                    mesh.points[here][k] *= near * (place == 0 ? first : last);
+                }
+              }
+              const LimitSurface surface = surface_of(mesh, triangles ? Scheme::loop : Scheme::catmark);
+              const CentreStar star = star_at_centre(surface, 2);
+              const bool proved = certainly_injective(star.sectors, star.closed),
+                         over = turns_over(star.sectors);
+              EXPECT_FALSE(proved && over)
+                  << (triangles ? "triangles " : "quads ") << n << (corner ? ", sharp, " : ", ")
+                  << first * near << " and " << last * near << (all_along ? "" : ", near it");
+              injective += proved ? 1 : 0;
+              turned += over ? 1 : 0;
+            }
+          }
+        }
+      }
+    }
+  }
+  std::printf("injective %d, turned %d\n", injective, turned);
+  EXPECT_GT(injective, 40);
+  EXPECT_GT(turned, 100);
+}
+
 // Triangles of Midedge and other faces of dual schemes: the slowest parts at their middles differ from level to level.
 TEST(star, of_a_dual_scheme_that_turns_over_in_the_limit_is_never_injective) {
   std::mt19937_64 random(8);
