@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t largest_size = 120;
 constexpr unsigned max_squarings = 12;
 constexpr double enough_contraction = 0.5;
+constexpr int improving_squarings = 10;
 
 using Row = std::vector<double>;
 
@@ -109,11 +110,14 @@ class DecaySearch {
     return false;
   }
 
-  // Towards what lasts: A^64 V, made dual again. No proof rests on how near it comes.
+  // Towards what lasts: a power of A times V, made dual again. No proof rests on how near it comes.
   bool improve() {
     MatrixPower power(step_, size_);
     power.remove(limit_);
-    for (int i = 0; i < 6; ++i) power.square();
+    // Not so far that one column is all that is left of each.
+    double apart = lasting_.ratio.upper;
+    for (int i = 0; i < improving_squarings && apart < 1e4 && power.sum > 1e-140; ++i, apart *= apart)
+      power.square();
     const std::size_t m = columns_.size();
     std::vector<Row> images(m, Row(size_, 0.0)), seen(m, Row(m, 0.0));
     for (std::size_t t = 0; t < m; ++t) {

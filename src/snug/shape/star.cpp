@@ -32,14 +32,26 @@ class TurnAround {
     error_ = error;
     return add(patch, edge, corner_levels);
   }
-  // visit(from, to) of each pair of Bezier points next to each other along an edge.
-  // Requires:  a polynomial.
+  // visit(from, to) of each pair of Bezier points next to each other along an edge, but near an extraordinary corner.
   template <class Visit>
-  static void each_step(const Patch& patch, unsigned edge, const Visit& visit) {
-    each_curve(patch, edge, [&](const FlatCurve& curve) {
+  static void each_step(const Patch& patch, unsigned edge, const Visit& visit, unsigned levels = 2) {
+    const auto steps = [&](const FlatCurve& curve) {
       for (std::size_t t = 0; t < curve.degree; ++t) visit(curve.points[t], curve.points[t + 1]);
       return true;
-    });
+    };
+    if (patch.kind->polynomial()) {
+      each_curve(patch, edge, steps);
+      return;
+    }
+    const RingDecay* const tip = decay_of(*patch.kind);
+    const std::optional<FlatCurve> whole =
+        tip != nullptr ? curve_at_end_of_fan(patch, corner_of(*tip, patch), edge) : std::nullopt;
+    if (whole) {
+      steps(*whole);
+    } else if (levels > 0) {
+      each_step(split(patch, edge), edge, visit, levels - 1);
+      each_step(split(patch, (edge + 1) % 3), edge, visit, levels - 1);
+    }
   }
   // Of a closed curve the angle is a multiple of 2 pi.
   [[nodiscard]] bool once() const { return angle_ < 3 * std::numbers::pi; }
@@ -306,18 +318,16 @@ class StarCheck {
       const Vector3 c = ends[sectors_[s].centre];
       const auto at = [&](const Vector3& p) { return Point2{p.x - c.x, p.y - c.y}; };
       add(at(ends[edge]), at(ends[(edge + 1) % 3]));
-      if (flat_[s].kind->polynomial()) {
-        TurnAround::each_step(flat_[s], edge, [&](Point2 p, Point2 q) {
-          add(at({p.x, p.y, 0}), at({q.x, q.y, 0}));
-        });
-      }
+      TurnAround::each_step(flat_[s], edge, [&](Point2 p, Point2 q) {
+        add(at({p.x, p.y, 0}), at({q.x, q.y, 0}));
+      });
       return true;
     });
     Point2 mean, point;
     for (const auto& line : lines) mean = mean + (1 / static_cast<double>(lines.size())) * line[0];
     double most = -INFINITY, step = 0.3;
     Point2 at = mean;
-    for (int i = 0; i < 60; ++i, step *= 0.9) {
+    for (int i = 0; i < 300; ++i, step *= 0.975) {
       double least = INFINITY;
       Point2 away;
       for (const auto& [on, left] : lines) {
