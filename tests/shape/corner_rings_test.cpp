@@ -96,10 +96,10 @@ void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
     const Patch& net = nets[0];
     EXPECT_EQ(nets.size(), 1U + (decay.larger ? 1 : 0) + (decay.links > 0 ? 1 : 0));
     if (!(net.error < 0.2 * net.largest)) continue;
-    // How often each growth is added: as often as steps are made, and sums of powers of the ratio, or sums of these.
+    // How often each growth is added.
+    const double ratio = middle(decay.ratio);
     std::vector<double> times(nets.size(), 0);
     times[0] = 1;
-    double power = 1, sum = 0;
     for (std::size_t further = level; further < direct.size(); ++further) {
       std::vector<double> rest = centred(direct[further], rings.axes(level), scale(further));
       double off = off_of(further, rings.axes(level)), large = 0;
@@ -109,13 +109,9 @@ void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
         off += times[n] * nets[n].error;
         large += times[n] * nets[n].largest;
       }
-      EXPECT_LE(widest(rest), 1.001 * off + 1e-10 * large) << "level " << level << " and " << further;
-      if (decay.larger) {
-        times.back() += decay.links > 0 ? sum : power;
-        sum += power;
-        power *= middle(decay.ratio);
-      }
-      if (decay.links > 0) times[1] += 1;
+      EXPECT_LE(widest(rest), 1.001 * off + 1e-9 * large) << "level " << level << " and " << further;
+      if (decay.links > 0) times[1] += decay.larger ? ratio - 1 : 1;
+      if (decay.larger) times.back() = (times.back() + 1) * ratio - 1;
     }
   }
 }

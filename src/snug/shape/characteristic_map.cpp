@@ -241,7 +241,7 @@ RingDecay CharacteristicMap::decay() const {
     decay.largest_row = rows_[dominant_];
     decay.largest_column = directions_[dominant_];
     decay.row_error = row_errors_[dominant_];
-    decay.column_off = enlarged(direction_errors_[dominant_] + 0x1p-19 * (1 + extents_[0] + extents_[1]));
+    decay.column_off = direction_errors_[dominant_];
   }
   decay.period = contraction_.period;
   decay.factor = contraction_.factor;

@@ -12,7 +12,7 @@ namespace snug {
 namespace {
 
 // Levels that are followed. Share of the size below which what is left is not worth more of them.
-constexpr std::size_t max_rings = 400;
+constexpr std::size_t max_rings = 700;
 constexpr double small_rest = 0x1p-24;
 
 // Constants last, and no extent sees them.
@@ -22,18 +22,23 @@ void centre(std::vector<double>& values) {
   for (double& x : values) x -= middle;
 }
 
+void rescale(Patch& net, double by) {
+  for (Vector3& p : net.points) p = by * p;
+  net.largest *= by;
+  net.error = enlarged(by * net.error + gamma_bound(3) * net.largest);
+}
+
 // The order of the differences that do not last, beside the largest row.
 unsigned order_of(const RingDecay& decay) { return decay.links > 0 ? 2 : 1; }
 
 }  // namespace
 
-RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector<double> values, double error,
-                       bool without_largest)
-    : decay_(&decay),
-      step_(&step),
-      larger_(decay.larger && !without_largest),
-      without_largest_(decay.larger && without_largest) {
+RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector<double> values, double error)
+    : decay_(&decay), step_(&step) {
   least_off_ = enlarged((decay.least.upper - decay.least.lower) / decay.least.lower);
+  std::size_t longest = 0;
+  for (std::size_t r = 0; r < step.row_count(); ++r) longest = std::max(longest, step.row(r).sources.size());
+  rounding_ = enlarged(step.max_error() + gamma_bound(longest + 6) * (step.max_abs_sum() + step.max_error()));
   Level first{std::move(values), 0, 0};
   first.off = enlarged(error + gamma_bound(2) * largest_of(first.values));
   centre(first.values);
@@ -45,13 +50,15 @@ RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector
   std::vector<double> parts;
   while (parts.size() < max_rings) {
     descend_to(parts.size() + 1);
-    const Lasting last = lasting(parts.size());
-    parts.push_back(enlarged(last.extent + last.off));
-    // Beyond, roundings are all that is seen, which grow where one eigenvalue is larger; or there is little, for a whole period.
+    // Of the differences that do not last.
+    const Level last = difference(parts.size(), order_of(decay));
+    const double left = extent(last.values);
+    parts.push_back(enlarged(left + last.off));
+    // Beyond, roundings are all that is seen, which grow in a chain; or there is little, for a whole period.
     const std::size_t period = decay.period;
     const double before = parts.size() < period ? INFINITY : parts[parts.size() - period];
     if (before < small_rest * levels_[0].largest || before < 4 * last.off ||
-        ((larger_ || decay.links > 0) && last.extent < last.off))
+        (decay.links > 0 && left < last.off))
       break;
   }
   add_up(std::move(parts));
@@ -63,8 +70,8 @@ void RingValues::descend_to(std::size_t count) {
 
 // What the largest row sees is rounding, and would grow. Returns what the values are off more, beside that.
 double RingValues::take_off_largest(Level& level) {
-  if (!without_largest_) return 0;
   const RingDecay& decay = *decay_;
+  if (!decay.larger) return 0;
   const std::size_t size = level.values.size();
   double seen = 0, sum = 0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -76,7 +83,7 @@ double RingValues::take_off_largest(Level& level) {
   const double large = largest_of(level.values) + 2 * moved;
   // As a share of the row's sum, which `seen` holds.
   largest_off_ = enlarged((decay.row_error / sum + gamma_bound(size + 6)) * 2 * large +
-                          std::fabs(seen) * decay.column_off / sum);
+                          std::fabs(seen) * decay.column_off);
   return enlarged(gamma_bound(3) * large + std::fabs(seen) * decay.column_off);
 }
 
@@ -91,12 +98,9 @@ void RingValues::descend() {
   centre(next.values);
   const double taken_off = take_off_largest(next);
   next.largest = largest_of(next.values);
-  const double off = (step_->max_error() +
-                      gamma_bound(next.values.size() + 6) * (step_->max_abs_sum() + step_->max_error())) *
-                         (before.largest / least) +
-                     taken_off;
+  const double off = rounding_ * (before.largest / least) + taken_off;
   all_off_ = enlarged(all_off_ + off);
-  growing_off_ = enlarged((larger_ ? decay.ratio.upper : 1) * growing_off_ + off);
+  growing_off_ = enlarged(growing_off_ + off);
   // Chains grow as the number of steps does.
   const double seen = decay.seen + decay.chain_seen * static_cast<double>(levels_.size());
   next.off =
@@ -119,57 +123,29 @@ RingValues::Level RingValues::step_between(const Level& from, const Level& to) c
   return step;
 }
 
-// The extent of a difference, less what the one before leaves to it: this shrinks. `next_`: the one that was next.
-RingValues::Lasting RingValues::lasting(std::size_t level) {
-  const unsigned order = order_of(*decay_);
-  if (!larger_) {
-    const Level step = difference(level, order);
-    return {extent(step.values), step.off};
-  }
-  const Level step = level > 0 ? std::move(next_) : difference(level, order);
-  next_ = difference(level + 1, order);
-  const double ratio = middle(decay_->ratio);
-  double least = INFINITY, most = -INFINITY;
-  for (std::size_t i = 0; i < step.values.size(); ++i) {
-    const double rest = next_.values[i] - ratio * step.values[i];
-    least = std::min(least, rest);
-    most = std::max(most, rest);
-  }
-  const double of_ratio = (decay_->ratio.upper - decay_->ratio.lower + gamma_bound(2) * ratio) * step.largest;
-  return {enlarged(0.5 * (most - least)),
-          enlarged(next_.off + decay_->ratio.upper * step.off + of_ratio + gamma_bound(2) * next_.largest)};
-}
-
 // Parts beyond the last ones shrink by the factor of a period.
 void RingValues::add_up(std::vector<double> parts) {
   const RingDecay& shrinks = *decay_;
   const auto period = static_cast<double>(shrinks.period);
-  const double rest = 1 - shrinks.factor, grown = decay_->ratio.lower - 1;
+  const double rest = 1 - shrinks.factor;
   // The levels are scaled by a number that differs from the eigenvalue's power.
   for (double& part : parts) part *= 1 + 4 * static_cast<double>(parts.size()) * least_off_;
   const double end = shrinks.most * parts.back() * period, late = period / rest;
-  // Of all further parts; of these sums; and of those.
+  // Of all further parts, and of these sums.
   double once = enlarged(end / rest);
   if (parts.size() >= shrinks.period) {
     double last = 0;
     for (std::size_t k = parts.size() - shrinks.period; k < parts.size(); ++k) last += parts[k];
     once = std::min(once, enlarged(last * shrinks.factor / rest));
   }
-  double twice = enlarged(once * late), thrice = enlarged(twice * late), of_largest = once;
+  double twice = enlarged(once * late);
   further_.resize(parts.size() + 1);
   for (std::size_t level = parts.size() + 1; level-- > 0;) {
     if (level < parts.size()) {
       once = enlarged(once + parts[level]);
       twice = enlarged(twice + once);
-      if (larger_ && grown > 0) twice = std::min(twice, enlarged(once / grown));
-      thrice = enlarged(thrice + twice);
-      of_largest = enlarged((of_largest + parts[level]) / decay_->ratio.lower);
     }
-    const bool chained = shrinks.links > 0;
-    further_[level] = {larger_ && chained   ? thrice
-                       : larger_ || chained ? twice
-                                            : once,
-                       larger_ ? twice : once, larger_ ? of_largest : 0};
+    further_[level] = {shrinks.links > 0 ? twice : once, once};
   }
 }
 
@@ -182,7 +158,8 @@ CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
   }
   const double error = enlarged(values.error + gamma_bound(2) * values.largest);
   const double largest = std::max(largest_of(centred[0]), largest_of(centred[1]));
-  // All growth of the largest row along the second axis: the first one is across what that row sees, exactly.
+  // What the larger eigenvalue's row sees along the second axis: the first one is across that, exactly.
+  double of_row = 0;
   if (decay.larger) {
     Point2 along;
     double sum = 0;
@@ -191,53 +168,79 @@ CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
       sum += std::fabs(decay.largest_row[i]);
     }
     const double size = std::sqrt(dot(along, along));
-    const double off = enlarged(
-        2 * (decay.row_error * largest + sum * (error + gamma_bound(values.points.size() + 2) * largest)));
-    if (size > 4 * off) {
-      axes_ = {{{along.y / size, -along.x / size}, {along.x / size, along.y / size}}};
-      axis_off_ = enlarged(2 * off / size + gamma_bound(8));
-      apart_ = true;
-    }
+    of_row = enlarged(
+        2 * (decay.row_error * largest + sum * (error + gamma_bound(values.points.size() + 4) * largest)));
+    // Else no axis is across it; no net is of use, with such errors.
+    const bool seen = size > 4 * of_row;
+    if (seen) axes_ = {{{along.y / size, -along.x / size}, {along.x / size, along.y / size}}};
+    axis_off_ = seen ? enlarged(2 * of_row / size + gamma_bound(8)) : 1;
+    along_ = {std::max(0.0, rounded_down(size - of_row)), rounded_up(size + of_row)};
   }
   for (std::size_t c = 0; c < 2; ++c) {
     std::vector<double> along;
-    for (std::size_t i = 0; i < values.points.size(); ++i)
+    for (std::size_t i = 0; i < values.points.size(); ++i) {
       along.push_back(dot(axes_[c], {centred[0][i], centred[1][i]}));
-    values_.emplace_back(decay, step_, std::move(along),
-                         enlarged(2 * error + (2 * axis_off_ + gamma_bound(4)) * 2 * largest),
-                         apart_ && c == 0);
+      if (decay.larger && c == 1) along.back() -= middle(along_) * decay.largest_column[i];
+    }
+    double off = enlarged(2 * error + (2 * axis_off_ + gamma_bound(4)) * 2 * largest);
+    if (decay.larger) {
+      const double of_column = largest_of(decay.largest_column);
+      off =
+          enlarged(off + of_row * of_column + along_.upper * (decay.column_off + gamma_bound(4) * of_column));
+    }
+    values_.emplace_back(decay, step_, std::move(along), off);
     count_ = std::max(count_, values_.back().count());
   }
   for (RingValues& own : values_) own.descend_to(count_);
 }
 
+// Of the larger eigenvalue's vector along the second axis: at least, and at most.
+Interval CornerRings::larger_part(std::size_t level) const {
+  if (!decay_->larger) return Interval{0};
+  const auto steps = static_cast<double>(level);
+  // Levels are divided by a number near the eigenvalue.
+  const double off = (steps + 2) * gamma_bound(4),
+               least_off = steps * (decay_->least.upper / decay_->least.lower - 1);
+  return {along_.lower * std::pow(decay_->ratio.lower, steps) * (1 - off - least_off),
+          along_.upper * std::pow(decay_->ratio.upper, steps) * (1 + off + 2 * least_off)};
+}
+
+// By powers of two, so that both coordinates are about as large.
+double CornerRings::scale(std::size_t level, std::size_t coordinate) const {
+  if (!decay_->larger) return 1;
+  double largest = values_[coordinate].level(level).largest;
+  if (coordinate == 1)
+    largest = std::max(largest, larger_part(level).upper * largest_of(decay_->largest_column));
+  return largest > 0x1p-500 && largest < 0x1p500 ? std::ldexp(1.0, -std::ilogb(largest)) : 1;
+}
+
 std::array<Point2, 2> CornerRings::axes(std::size_t level) const {
-  if (!apart_) return axes_;
-  // By powers of two, so that both coordinates are about as large.
-  std::array<Point2, 2> axes = axes_;
-  for (std::size_t c = 0; c < 2; ++c) {
-    const double largest = values_[c].level(level).largest;
-    if (largest > 0x1p-500 && largest < 0x1p500) axes[c] = std::ldexp(1.0, -std::ilogb(largest)) * axes[c];
-  }
-  return axes;
+  return {scale(level, 0) * axes_[0], scale(level, 1) * axes_[1]};
 }
 
 Patch CornerRings::net_of(std::size_t level, unsigned order, double RingValues::Sums::*sum) const {
   Patch net;
   net.kind = decay_->kind;
   net.first = first_;
-  const std::array<Point2, 2> axes = this->axes(level);
   for (std::size_t c = 0; c < 2; ++c) {
-    const RingValues::Level own = order == 0 ? values_[c].level(level) : values_[c].difference(level, order);
-    const double scale = axes_[c].x != 0 ? axes[c].x / axes_[c].x : axes[c].y / axes_[c].y;
+    RingValues::Level own = order == 0 ? values_[c].level(level) : values_[c].difference(level, order);
+    double off = own.off + (sum != nullptr ? values_[c].further(level).*sum : 0);
+    if (decay_->larger && order == 0 && c == 1) {
+      // Of all further nets at least this much; of one, no more than that.
+      const Interval part = larger_part(level);
+      const double of_column = largest_of(decay_->largest_column);
+      for (std::size_t i = 0; i < own.values.size(); ++i)
+        own.values[i] += part.lower * decay_->largest_column[i];
+      own.largest = enlarged(own.largest + part.lower * of_column);
+      off += part.lower * decay_->column_off + gamma_bound(3) * own.largest;
+      if (sum == nullptr) off += (part.upper - part.lower) * (of_column + decay_->column_off);
+    }
+    const double by = scale(level, c);
     net.points.resize(own.values.size());
-    // The first coordinate has nothing of the larger eigenvalue.
-    if (sum == &RingValues::Sums::largest && c == 0 && apart_) continue;
     for (std::size_t i = 0; i < own.values.size(); ++i)
-      (c == 0 ? net.points[i].x : net.points[i].y) = scale * own.values[i];
-    net.largest = std::max(net.largest, scale * own.largest);
-    net.error = std::max(net.error,
-                         enlarged(scale * (own.off + (sum != nullptr ? values_[c].further(level).*sum : 0))));
+      (c == 0 ? net.points[i].x : net.points[i].y) = by * own.values[i];
+    net.largest = std::max(net.largest, by * own.largest);
+    net.error = std::max(net.error, enlarged(by * off));
   }
   return net;
 }
@@ -246,8 +249,21 @@ Patch CornerRings::net(std::size_t level) const { return net_of(level, 0, nullpt
 
 std::vector<Patch> CornerRings::all_further(std::size_t level) const {
   std::vector<Patch> nets{net_of(level, 0, &RingValues::Sums::net)};
-  if (decay_->links > 0) nets.push_back(net_of(level, 1, &RingValues::Sums::chain));
-  if (decay_->larger) nets.push_back(net_of(level, order_of(*decay_), &RingValues::Sums::largest));
+  const bool larger = decay_->larger;
+  if (decay_->links > 0) {
+    nets.push_back(net_of(level, 1, &RingValues::Sums::chain));
+    // So that it is added no more often than the other one: i times q - 1, against q^i - 1.
+    if (larger) rescale(nets.back(), 1 / (decay_->ratio.lower - 1));
+  }
+  if (larger) {
+    nets.push_back(nets[0]);
+    Patch& growth = nets.back();
+    const double by = scale(level, 1) * larger_part(level).lower;
+    for (std::size_t i = 0; i < growth.points.size(); ++i)
+      growth.points[i] = {0, by * decay_->largest_column[i], 0};
+    growth.largest = enlarged(by * largest_of(decay_->largest_column));
+    growth.error = enlarged(by * decay_->column_off + gamma_bound(2) * growth.largest);
+  }
   return nets;
 }
 

@@ -298,6 +298,26 @@ std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t s
   const double error = exact_step ? 0 : step.max_error() + gamma_bound(2);
   const auto add_larger = [&] {
     if (!verify(a, error, first)) return false;
+    // From the right: the rows of what is turned over.
+    Matrix turned(size, Row(size));
+    for (std::size_t r = 0; r < size; ++r) {
+      for (std::size_t c = 0; c < size; ++c) turned[c][r] = a[r][c];
+    }
+    Pair right = first;
+    right.row = first.column;
+    if (!verify(turned, error, right)) return false;
+    double seen = 0, sum = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      seen += first.row[i] * right.row[i];
+      sum += std::fabs(first.row[i]) + std::fabs(right.row[i]);
+    }
+    for (const double x : right.row) result.column.push_back(x / seen);
+    const double seen_off =
+        enlarged((first.off + right.off + gamma_bound(size + 2) * largest_of(first.row)) * sum);
+    if (!(seen_off < 0x1p-20 * std::fabs(seen))) return false;
+    result.column_error =
+        enlarged(right.off / std::fabs(seen) +
+                 (2 * seen_off / std::fabs(seen) + gamma_bound(3)) * largest_of(result.column));
     result.rows.push_back(first.row);
     result.error = std::max(result.error, enlarged(count * first.off));
     result.larger = true;

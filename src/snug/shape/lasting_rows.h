@@ -17,6 +17,9 @@ struct LastingRows {
   Interval least;       ///< the smaller eigenvalue
   bool larger = false;  ///< a larger one, which has one row
   Interval ratio{1};    ///< of that to the smaller one
+  std::vector<double>
+      column;               ///< of the larger one: v, A v = l v, w v = 1 for its row w, which is the last one
+  double column_error = 0;  ///< upper bound of what a number of it is off
   std::size_t links =
       0;  ///< of the smaller one (L - l)^2 = 0, and this is the rank of L - l: if it is not 0, these rows are a chain
 };

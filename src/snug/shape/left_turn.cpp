@@ -130,9 +130,9 @@ class FanEnd {
                      enlarged(size * off_across + (off.x + off.y) * (far + off_across) +
                               gamma_bound(8) * size * far);
         }
-        // Of two growths the first one is added at most once more often than the second one.
+        // Of two growths the first one is added at most as often as the second one.
         if (!(least[0] > 0) || (nets.size() > 1 && !(least[nets.size() - 1] > 0))) return false;
-        if (nets.size() > 2 && !(least[1] + std::min(least[0], least[2]) > 0)) return false;
+        if (nets.size() > 2 && !(least[1] + least[2] > 0)) return false;
       }
     }
     return true;

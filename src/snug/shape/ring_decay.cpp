@@ -191,10 +191,9 @@ class DecaySearch {
       // The larger eigenvalue's row is the last one. Of its column what W does not see is the sum of B^i r / q^(i + 1).
       if (!lasting_.larger || t + 1 < m) continue;
       decay.largest_row = lasting_.rows[t];
-      decay.largest_column = columns_[t];
+      decay.largest_column = lasting_.column;
       decay.row_error = lasting_.error;
-      decay.column_off = enlarged(2 * decay.most * unseen * period / rest +
-                                  2 * static_cast<double>(m) * mixing * (1 + widest));
+      decay.column_off = lasting_.column_error;
     }
     decay.seen = enlarged(2 * seen);
     return std::isfinite(decay.seen);
