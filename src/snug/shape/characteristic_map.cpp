@@ -206,7 +206,7 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
     const double error = image_error / l + spread * (step_sum * largest + image_error) +
                          gamma_bound(4) * (step_sum * largest / l + largest) + exact * (1 + step_sum / l);
     direction_errors_[t] = enlarged(sums[t] * (extent(residual) + error) + exact);
-    if (!(direction_errors_[t] < 0x1p-20 * extents_[t])) return false;
+    if (!(direction_errors_[t] < 0x1p-14 * extents_[t])) return false;
   }
   return true;
 }
