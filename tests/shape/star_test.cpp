@@ -522,7 +522,7 @@ TEST(star, at_a_dart_or_a_sharp_corner_is_injective) {
   const auto height = [](double x, double y) { return 0.05 * (x * x + x * y); };
   for (const bool triangles : {true, false}) {
     const Scheme scheme = triangles ? Scheme::loop : Scheme::catmark;
-    for (std::uint32_t n = 3; n <= 10; ++n) {
+    for (std::uint32_t n = 3; n <= 16; ++n) {
       auto dart = triangles ? disc(n, 1, height) : quad_disc(n, height);
       const std::uint32_t around = triangles ? n : 2 * n;
       for (std::uint32_t ring = 0; ring < 3; ++ring) {
