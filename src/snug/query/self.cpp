@@ -173,7 +173,8 @@ class SelfSearch {
       }
       return;
     }
-    compare_far(far);
+    std::vector<NamePair> later;
+    compare_far(far, max_tests, &later);
     std::vector<NamePair> live = near_pairs(pieces);
     std::erase_if(live, are_facets);
     for (unsigned depth = 0; !live.empty() && contacts_.empty(); ++depth, ++level) {
@@ -187,9 +188,10 @@ class SelfSearch {
       }
       far.clear();
       live = split_pairs(live, far);
-      compare_far(far);
+      compare_far(far, max_tests, &later);
       answer_.levels = depth + 1;
     }
+    compare_far(later);
   }
 
   // Contacts of pieces that are known from their control points.
@@ -295,12 +297,20 @@ class SelfSearch {
   }
 
   // Returns the pairs that are neither apart nor cross, as far as `most` tests of each can tell. Most need few: what these leave of the
-  // budget is for the others.
-  std::vector<NamePair> compare_far(const std::vector<NamePair>& pairs, std::uint64_t most = max_tests) {
+  // budget is for the others. With `later`, only half of it now: those that need more are put there.
+  std::vector<NamePair> compare_far(const std::vector<NamePair>& pairs, std::uint64_t most = max_tests,
+                                    std::vector<NamePair>* later = nullptr) {
+    const std::uint64_t kept_back = later != nullptr ? budget_ / 2 : 0;
     std::vector<NamePair> open = pairs, unknown;
-    for (std::uint64_t before = 0; !open.empty();) {
-      const std::uint64_t each = std::max<std::uint64_t>(std::min(most, budget_ / open.size()), 1);
-      const bool last = each == most || each < 2 * before;
+    for (std::uint64_t before = 0; !open.empty() && contacts_.empty();) {
+      const std::uint64_t all = before == 0 ? budget_ : budget_ - std::min(budget_, kept_back);
+      const std::uint64_t each = std::max<std::uint64_t>(std::min(most, all / open.size()), 1);
+      // Another round would be of little use.
+      if (before > 0 && each < 2 * before) {
+        for (const NamePair& pair : open) later != nullptr ? later->push_back(pair) : leave_far(pair);
+        budget_spent_ = budget_spent_ || later == nullptr;
+        break;
+      }
       std::vector<Found> found(open.size());
       for_each_with_pieces(model_, open.size(), run_.threads, monitor_, [&](PieceCache& kept, std::size_t i) {
         found[i] = PairComparison(kept, each).run(open[i]);
@@ -310,22 +320,26 @@ class SelfSearch {
         const Found& one = found[i];
         answer_.pair_tests += one.tests;
         spend(one.tests);
-        const bool short_of_tests = one.what == Found::What::unknown && one.tests >= each && each < most;
-        if (short_of_tests && !last) {
+        if (one.what == Found::What::unknown && one.tests >= each && each < most) {
           left.push_back(open[i]);
           continue;
         }
         keep(one);
         if (one.what == Found::What::unknown) unknown.push_back(open[i]);
-        budget_spent_ = budget_spent_ || short_of_tests;
       }
       open = std::move(left);
       before = each;
-      if (!contacts_.empty()) break;
     }
     return unknown;
   }
 
+  // Two pieces that no tests are left for: by their corners 0.
+  void leave_far(const NamePair& pair) {
+    Found found;
+    found.what = Found::What::unknown;
+    found.pieces = pair;
+    keep(found);
+  }
   void leave(const NamePair& pair) {
     Found found;
     found.what = Found::What::unknown;
