@@ -315,7 +315,11 @@ void CreasedRules::add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, S
   const VertexId v = topology.from(corner);
   Star star;
   gather_star(mesh, v, star);
-  if (!limit_in_star(*this, topology, star)) {
+  // The rows of a crease are those of faces that a step no longer changes the size of.
+  const auto odd = [&](HalfEdge h) { return topology.face(topology.face_of(h)).size() != corners; };
+  const bool odd_crease =
+      vertex_rule(star) == VertexRule::crease && std::any_of(star.faces.begin(), star.faces.end(), odd);
+  if (odd_crease || !limit_in_star(*this, topology, star)) {
     const NextStar next = next_star(mesh, star);
     const auto& faces = next.part.faces;
     const auto place = std::find(faces.begin(), faces.end(), topology.face_of(corner)) - faces.begin();
