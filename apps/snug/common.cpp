@@ -1,5 +1,6 @@
 #include "common.h"
 
+#include <algorithm>
 #include <mutex>
 #include <unordered_set>
 
@@ -31,7 +32,9 @@ void require_output(const std::string& command, const std::string& output) {
   if (command == "subdivide" || command == "tessellate" || command == "envelope" || command == "fit") {
     static_cast<void>(format_of(output));
   } else if (command == "convert") {
-    if (!output.ends_with(".step") && !output.ends_with(".stp")) {
+    std::string name = output;
+    std::transform(name.begin(), name.end(), name.begin(), lower_case);
+    if (!name.ends_with(".step") && !name.ends_with(".stp")) {
       throw UsageError("-o " + output + ": convert writes STEP; give a file that ends in .step or .stp");
     }
   } else if (command == "view") {

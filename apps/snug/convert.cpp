@@ -118,8 +118,7 @@ Command convert_command() {
   list.add(Group::own, "--error LENGTH", &options->error,
            "Largest distance between limit surface and faces; mesh units, percent, or with a unit, such as "
            "0.01mm "
-           "(default 0.01%)")
-      .formerly("--tolerance");
+           "(default 0.01%)");
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle of faces across edges in which the surface is smooth; 0 for any")
       .between(0, 90);

@@ -74,8 +74,9 @@ Length parse_length(const std::string& text, const std::string& option, bool zer
     }
   }
   if (!parse_number(digits, length.number) || length.number < 0 || (length.number == 0 && !zero_allowed)) {
-    throw UsageError(option + ": '" + text + "' is not a " + (zero_allowed ? "length" : "positive length") +
-                     "; give mesh units (0.01) or percent of the size (1%)");
+    throw UsageError(
+        option + ": '" + text + "' is not a " + (zero_allowed ? "length" : "positive length") +
+        "; give mesh units (0.01), percent of the size (1%), or a length in mm, cm, m or inch (0.1mm)");
   }
   return length;
 }

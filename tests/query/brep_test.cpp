@@ -2,6 +2,7 @@
 
 #include <snug/brep.h>
 #include <snug/distance.h>
+#include <snug/evaluate.h>
 #include <snug/measure.h>
 
 #include <gtest/gtest.h>
@@ -90,29 +91,73 @@ void expect_joined(const Brep& brep) {
   }
 }
 
-// Edges lie on the borders of the faces beside them: their middles are found there.
+using Exact = std::array<long double, 3>;
+
+Exact point_of(const SplineCurve& c, long double t) {
+  const auto basis = oracle::spline_basis(c.knots, c.degree, t);
+  Exact p{};
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    p[0] += basis[i] * c.points[i].x;
+    p[1] += basis[i] * c.points[i].y;
+    p[2] += basis[i] * c.points[i].z;
+  }
+  return p;
+}
+
+double distance_of(const Exact& a, const Exact& b) {
+  return static_cast<double>(std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                                       (a[2] - b[2]) * (a[2] - b[2])));
+}
+
+// Curves are no farther from the borders of faces than `gap`, at parameters that crowd at their ends. A side of a quad beside
+// two quads of a polygon is half as long by its own parameters.
 void expect_edges_on_faces(const Brep& brep) {
+  double largest = 0;
+  for (const Point3& p : brep.vertices)
+    largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+  const double slack = brep.gap * (1 + 1e-6) + 1e-18 * largest;
   for (const Brep::Face& face : brep.faces) {
     const SplineSurface& s = face.surface;
     const double w = s.u_knots.back(), h = s.v_knots.back();
-    for (const Brep::Side& side : face.loop) {
-      const SplineCurve& curve = brep.edges[side.edge].curve;
-      const auto basis = oracle::spline_basis(curve.knots, curve.degree, curve.knots.back() / 2);
-      Point3 middle{};
-      for (std::size_t i = 0; i < basis.size(); ++i) {
-        const auto b = static_cast<double>(basis[i]);
-        middle = {middle.x + b * curve.points[i].x, middle.y + b * curve.points[i].y,
-                  middle.z + b * curve.points[i].z};
+    const auto on_side = [&](std::size_t side, double t) {
+      const double u = side == 0   ? t
+                       : side == 1 ? w
+                       : side == 2 ? w - t
+                                   : 0,
+                   v = side == 0   ? 0
+                       : side == 1 ? t
+                       : side == 2 ? h
+                                   : h - t;
+      return oracle::spline_point(s.degree, s.u_knots, s.v_knots, s.points, u, v);
+    };
+    std::size_t next = 0;
+    for (std::size_t side = 0; side < 4; ++side) {
+      const double length = side % 2 == 0 ? w : h;
+      for (double begin = 0; begin < length; ++next) {
+        ASSERT_LT(next, face.loop.size());
+        const Brep::Side& piece = face.loop[next];
+        const Brep::Edge& edge = brep.edges[piece.edge];
+        const double own = edge.curve.knots.back();
+        double ratio = 0;
+        for (const double r : {0.5, 1.0, 2.0}) {
+          const Point3 end = brep.vertices[edge.vertices[piece.reversed ? 0 : 1]];
+          if (begin + r * own <= length &&
+              distance_of({end.x, end.y, end.z}, on_side(side, begin + r * own)) <= 4 * slack)
+            ratio = r;
+        }
+        ASSERT_GT(ratio, 0);
+        for (int e = 0; e <= 12; ++e) {
+          for (const double part : {std::ldexp(1.0, -e), 1 - std::ldexp(0.75, -e)}) {
+            const double t = own * part;
+            EXPECT_LE(distance_of(point_of(edge.curve, piece.reversed ? own - t : t),
+                                  on_side(side, begin + ratio * t)),
+                      slack);
+          }
+        }
+        begin += ratio * own;
       }
-      double nearest = INFINITY;
-      for (int k = 0; k <= 32 * 8; ++k) {
-        const double t = k / 256.0;
-        for (const Point3& p :
-             {point_of(s, t * w, 0), point_of(s, t * w, h), point_of(s, 0, t * h), point_of(s, w, t * h)})
-          nearest = std::min(nearest, distance_of(p, middle));
-      }
-      EXPECT_LE(nearest, 0.02);
     }
+    EXPECT_EQ(next, face.loop.size());
   }
 }
 
@@ -138,7 +183,7 @@ TEST(brep, faces_are_as_near_as_they_say_with_every_tag_and_rule) {
     complete += brep.complete ? 1 : 0;
     expect_joined(brep);
     EXPECT_LE(brep.gap, 1e-12) << c.name;
-    if (made % 5 == 0) expect_edges_on_faces(brep);
+    expect_edges_on_faces(brep);
     for (const Brep::Face& face : brep.faces) {
       EXPECT_LE(face.error, brep.error);
       for (int k = 0; k < 2; ++k) {
@@ -193,6 +238,45 @@ TEST(brep, tips_come_nearer_and_breaks_become_flatter) {
   EXPECT_GT(to_brep(surface, {.error = 1e-2}).break_angle, 0.05);
 }
 
+TEST(brep, edges_lie_on_faces_far_away_and_beside_polygons) {
+  std::mt19937_64 random(8);
+  for (int k = 0; k < 12; ++k) {
+    oracle::TaggedMesh mesh = k % 3 == 0   ? meshes::mixed_strip()
+                              : k % 3 == 1 ? meshes::pyramid(7)
+                                           : meshes::prism(5);
+    mesh = meshes::shaken(mesh, 0.2, random);
+    const double away = k % 2 == 0 ? 0 : 1e8;
+    for (auto& p : mesh.points) p[0] += away;
+    for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::bilinear}) {
+      if (k % 3 == 0 && scheme == Scheme::doo_sabin) continue;  // no face has a surface
+      SCOPED_TRACE(std::to_string(k) + name_of(scheme));
+      const Brep brep = to_brep(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.error = 0.01});
+      expect_joined(brep);
+      expect_edges_on_faces(brep);
+      EXPECT_LE(brep.gap, 1e-12 + 1e-15 * away);
+    }
+  }
+}
+
+// The tangent plane at a border where a quad and triangles meet is that of points beside it, and edges lie on faces there.
+TEST(brep, has_the_tangent_plane_of_a_border_of_quads_and_triangles) {
+  oracle::TaggedMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0.3}, {1, 1, 0}, {0, 1, 0.2}, {-1, 0.5, 0.4}, {-0.5, -1, 0}};
+  mesh.polygons = {{0, 1, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+  const Surface surface(testing::control_mesh(mesh), {.scheme = Scheme::catmark});
+  const SurfacePoint at = evaluate(surface, {0, 0, 0, 0});
+  for (std::uint32_t face = 0; face < 3; ++face) {
+    const SurfacePoint near = evaluate(surface, {face, 0, 1e-9, 1e-9});
+    ASSERT_TRUE(at.normal && near.normal);
+    const Exact a{at.normal->x, at.normal->y, at.normal->z},
+        b{near.normal->x, near.normal->y, near.normal->z};
+    EXPECT_LE(distance_of(a, b), 1e-3);
+  }
+  const Brep brep = to_brep(surface, {.error = 1e-3});
+  expect_edges_on_faces(brep);
+  EXPECT_LE(brep.gap, 1e-13);
+}
+
 // Of a torus of regular quads rows become faces; none is beside itself.
 TEST(brep, regular_quads_in_rows_and_columns_are_one_face) {
   ControlMesh torus;
@@ -243,6 +327,44 @@ TEST(brep, hollows_are_told_and_solids_turned_outward) {
   expect_joined(turned);
 }
 
+// Cubes in each other, from the outermost on; '-' turned inwards.
+TEST(brep, shells_are_solids_or_hollows_whichever_way_they_are_turned) {
+  struct Nested {
+    const char* turns;
+    std::vector<std::optional<std::uint32_t>> voids;
+  };
+  const std::vector<Nested> cases{
+      {"+-", {{}, 0u}},      {"-+", {{}, 0u}},      {"--", {{}, {}}},      {"++", {{}, {}}},
+      {"+-+", {{}, 0u, {}}}, {"-+-", {{}, 0u, {}}}, {"+--", {{}, 0u, {}}}, {"-", {{}}}};
+  for (const Nested& nested : cases) {
+    SCOPED_TRACE(nested.turns);
+    oracle::TaggedMesh all;
+    double size = 8;
+    for (const char* turn = nested.turns; *turn != 0; ++turn, size /= 2) {
+      oracle::TaggedMesh cube = meshes::cube();
+      for (auto& p : cube.points) {
+        for (auto& x : p) x = size * (x - 0.5);
+      }
+      for (auto polygon : cube.polygons) {
+        if (*turn == '-') std::reverse(polygon.begin(), polygon.end());
+        for (auto& v : polygon) v += static_cast<std::uint32_t>(all.points.size());
+        all.polygons.push_back(polygon);
+      }
+      all.points.insert(all.points.end(), cube.points.begin(), cube.points.end());
+    }
+    const Brep brep =
+        to_brep(Surface(testing::control_mesh(all), {.scheme = Scheme::catmark}), {.error = 0.05});
+    ASSERT_EQ(brep.shells.size(), nested.voids.size());
+    for (std::size_t s = 0; s < brep.shells.size(); ++s) {
+      EXPECT_EQ(brep.shells[s].void_of, nested.voids[s]) << s;
+      double volume = 0;
+      for (std::uint32_t f = brep.shells[s].begin; f < brep.shells[s].end; ++f)
+        volume += flux(brep.faces[f].surface);
+      EXPECT_EQ(volume < 0, brep.shells[s].void_of.has_value()) << s;
+    }
+  }
+}
+
 std::string refusal(const oracle::TaggedMesh& mesh, Scheme scheme, const BrepOptions& options = {}) {
   try {
     static_cast<void>(to_brep(Surface(testing::control_mesh(mesh), {.scheme = scheme}), options));
@@ -260,6 +382,10 @@ TEST(brep, says_what_it_cannot_do) {
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.error = 0}).find("not a positive"), std::string::npos);
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.error = 1e-14}).find("the least is"),
             std::string::npos);
+  EXPECT_THROW(
+      static_cast<void>(to_brep(Surface(testing::control_mesh(meshes::cube()), {.scheme = Scheme::catmark}),
+                                {.error = 1e-4}, {.max_splits = 500})),
+      InputError);
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.max_angle = 91}).find("degrees"), std::string::npos);
 }
 

@@ -44,8 +44,6 @@ struct KnotList {
   }
 };
 
-bool is_straight(const SplineCurve& curve) { return curve.degree == 1 && curve.points.size() == 2; }
-
 class StepWriter {
  public:
   StepWriter(const Brep& brep, const StepOptions& options) : brep_(brep), options_(options) {}
@@ -92,7 +90,7 @@ class StepWriter {
     const std::size_t length = length_unit();
     const std::size_t angle = file_.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
     const std::size_t solid = file_.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
-    // What readers take for one point: far above the gaps between faces and edges, far below the error.
+    // What readers take for one point: above the gaps between faces and edges.
     std::string least;
     append_step_real(least, uncertainty());
     const std::size_t uncertain =
@@ -131,19 +129,8 @@ class StepWriter {
                      "),.UNSPECIFIED.,.F.,.F.,(", knots.multiplicities, "),(", knots.knots,
                      "),.UNSPECIFIED.)");
   }
-  std::size_t line(const SplineCurve& curve) {
-    const std::size_t from = file_.point(curve.points[0]);
-    const Vector3 along = curve.points[1] - curve.points[0];
-    const double size = length(along);
-    const std::size_t direction = file_.direction(size > 0 ? (1 / size) * along : Vector3{1, 0, 0});
-    std::string magnitude;
-    append_step_real(magnitude, size);
-    const std::size_t vector = file_.add("VECTOR('',", StepRef{direction}, ",", magnitude, ")");
-    return file_.add("LINE('',", StepRef{from}, ",", StepRef{vector}, ")");
-  }
-
   void add_edge(const Brep::Edge& edge) {
-    const std::size_t curve = is_straight(edge.curve) ? line(edge.curve) : spline(edge.curve);
+    const std::size_t curve = spline(edge.curve);
     edges_.push_back(file_.add("EDGE_CURVE('',", StepRef{vertices_[edge.vertices[0]]}, ",",
                                StepRef{vertices_[edge.vertices[1]]}, ",", StepRef{curve}, ",.T.)"));
   }

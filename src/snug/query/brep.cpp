@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <snug/geometry/rounding.h>
@@ -32,6 +33,16 @@ constexpr double degrees = 57.29577951308232;
 struct QuadParts {
   std::vector<QuadPiece> pieces;
   std::size_t degree = 0;
+
+  /// Of the B-spline surface: its knots run from side to side.
+  [[nodiscard]] std::uint64_t spans() const {
+    std::set<double> u, v;
+    for (const QuadPiece& piece : pieces) {
+      u.insert(piece.box().u0);
+      v.insert(piece.box().v0);
+    }
+    return std::uint64_t{u.size()} * v.size();
+  }
 };
 
 // One surface on its way to faces.
@@ -110,9 +121,9 @@ class BrepMaker {
   }
 
   void require_budget() const {
-    std::size_t pieces = 0;
-    for (const QuadParts& parts : parts_) pieces += parts.pieces.size();
-    if (pieces > run_.max_splits.value_or(default_splits::brep)) {
+    std::uint64_t spans = 0;
+    for (const QuadParts& parts : parts_) spans += parts.spans();
+    if (spans > run_.max_splits.value_or(default_splits::brep)) {
       throw InputError(InputProblem::value,
                        "more than " + std::to_string(run_.max_splits.value_or(default_splits::brep)) +
                            " spans: give a larger error or budget");
@@ -221,17 +232,20 @@ class BrepMaker {
     joints_ = layout_.joined(drafts_);
     brep.edges.resize(joints_.size());
     std::vector<std::uint32_t> number(layout_.name_count(), UINT32_MAX);
+    double gap = 0;  // in scaled units
     for (std::uint32_t e = 0; e < joints_.size(); ++e) {
       const FaceJoint& joint = joints_[e];
       Brep::Edge& edge = brep.edges[e];
       edge.curve = curve_of(brep, joint.uses[0], false);
       if (joint.count == 2) {
         SplineCurve other = curve_of(brep, joint.uses[1], true);
-        // A side of a quad beside two quads of a polygon is half as long by its parameters: a power of two.
-        for (double& knot : other.knots) knot *= joint.uses[0].length() / joint.uses[1].length();
-        brep.gap = std::max(brep.gap, scaled_gap(edge.curve, other));
         if (other.points.size() < edge.curve.points.size()) edge.curve = std::move(other);
       }
+      // What is handed out, against the borders themselves.
+      const SplineCurve curve = scaled(edge.curve);
+      for (std::size_t k = 0; k < joint.count; ++k)
+        gap = std::max(
+            gap, distance_bound(curve, scaled(border_of(brep, joint.uses[k], k == 1, curve.knots.back()))));
       for (std::size_t k = 0; k < 2; ++k) {
         const Point3 end = k == 0 ? edge.curve.points.front() : edge.curve.points.back();
         std::uint32_t& vertex = number[joint.ends[k]];
@@ -239,11 +253,13 @@ class BrepMaker {
           vertex = static_cast<std::uint32_t>(brep.vertices.size());
           brep.vertices.push_back(end);
         } else {
-          brep.gap = std::max(brep.gap, enlarged(distance(end, brep.vertices[vertex])));
+          const PowerOfTwo scale = surface_.scale();
+          gap = std::max(gap, enlarged(distance(scale.apply(end), scale.apply(brep.vertices[vertex]))));
         }
         edge.vertices[k] = vertex;
       }
     }
+    brep.gap = unscaled_up(gap, back_);
     for (Brep::Face& face : brep.faces) face.loop.clear();
     for (const LoopSide& side : layout_.loops(drafts_, joints_))
       brep.faces[side.face].loop.push_back({side.joint, side.reversed});
@@ -253,11 +269,18 @@ class BrepMaker {
     const SplineCurve curve = part_of(side_of(brep.faces[use.face].surface, use.side), use.begin, use.end);
     return backwards ? reversed(curve) : curve;
   }
-  double scaled_gap(const SplineCurve& a, const SplineCurve& b) const {
-    SplineCurve p = a, q = b;
-    for (Point3& x : p.points) x = surface_.scale().apply(x);
-    for (Point3& x : q.points) x = surface_.scale().apply(x);
-    return unscaled_up(distance_bound(p, q), back_);
+  // All of the side, by the parameters of a curve of this length along the joint. A side of a quad beside two quads of a polygon is
+  // half as long by its own: a power of two.
+  static SplineCurve border_of(const Brep& brep, const JointUse& use, bool backwards, double length) {
+    SplineCurve border = side_of(brep.faces[use.face].surface, use.side);
+    const double begin = backwards ? border.knots.back() - use.end : use.begin;
+    if (backwards) border = reversed(border);
+    for (double& knot : border.knots) knot = (knot - begin) * (length / use.length());
+    return border;
+  }
+  SplineCurve scaled(SplineCurve curve) const {
+    for (Point3& x : curve.points) x = surface_.scale().apply(x);
+    return curve;
   }
 
   static std::array<double, 2> on_side(const FaceDraft& draft, std::size_t side, double t) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include <snug/spline/face_spline.h>
@@ -10,7 +11,7 @@ namespace snug {
 namespace {
 
 // Beyond so many shells none is looked for in another: the time is that of all pairs.
-constexpr std::size_t most_shells = 100;
+constexpr std::size_t most_shells = 2000;
 
 struct Sampled {
   Box3 box;
@@ -84,19 +85,31 @@ void find_voids(Brep& brep) {
     closed.push_back(s);
     samples.push_back(sampled({brep.faces.data() + shell.begin, brep.faces.data() + shell.end}));
   }
-  for (std::size_t i = 0; i < closed.size(); ++i) {
-    std::optional<std::size_t> outer;
-    for (std::size_t k = 0; k < closed.size() && closed.size() <= most_shells; ++k) {
-      if (k == i || !within(samples[k].box, samples[i].box)) continue;
-      if (!around(samples[k], samples[i].triangles.front()[0])) continue;
-      if (!outer || within(samples[*outer].box, samples[k].box)) outer = k;
+  // The shells around each, the outermost first.
+  std::vector<std::vector<std::size_t>> around_it(closed.size());
+  for (std::size_t i = 0; i < closed.size() && closed.size() <= most_shells; ++i) {
+    for (std::size_t k = 0; k < closed.size(); ++k) {
+      if (k != i && within(samples[k].box, samples[i].box) &&
+          around(samples[k], samples[i].triangles.front()[0]))
+        around_it[i].push_back(k);
+    }
+  }
+  std::vector<std::size_t> order(closed.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return around_it[a].size() < around_it[b].size(); });
+  for (const std::size_t i : order) {
+    std::optional<std::size_t> outer;  // the nearest one
+    for (const std::size_t k : around_it[i]) {
+      if (!outer || around_it[k].size() > around_it[*outer].size()) outer = k;
     }
     Brep::Shell& shell = brep.shells[closed[i]];
-    if (outer && samples[i].volume < 0 && samples[*outer].volume > 0) {
+    const bool inward = samples[i].volume < 0;
+    // A hollow is turned the other way than the solid around it, as the mesh has them.
+    if (outer && !brep.shells[closed[*outer]].void_of && inward != (samples[*outer].volume < 0))
       shell.void_of = closed[*outer];
-    } else if (samples[i].volume < 0 && !outer) {
-      for (std::uint32_t f = shell.begin; f < shell.end; ++f) turn_over(brep.faces[f]);
-    }
+    if (inward == shell.void_of.has_value()) continue;
+    for (std::uint32_t f = shell.begin; f < shell.end; ++f) turn_over(brep.faces[f]);
   }
 }
 

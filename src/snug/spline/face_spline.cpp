@@ -216,12 +216,12 @@ SplineCurve part_of(const SplineCurve& curve, double begin, double end) {
 
 double distance_bound(const SplineCurve& a, const SplineCurve& b) {
   const SplineSurface p = swept(a), q = swept(b);
-  std::vector<double> breaks = breaks_of(a.knots);
-  for (const double t : b.knots) breaks.push_back(t);
-  breaks = [&] {
-    std::sort(breaks.begin(), breaks.end());
-    return breaks_of(breaks);
-  }();
+  std::vector<double> breaks = a.knots;
+  for (const double t : b.knots) {
+    if (t > a.knots.front() && t < a.knots.back()) breaks.push_back(t);
+  }
+  std::sort(breaks.begin(), breaks.end());
+  breaks = breaks_of(breaks);
   double largest = 0;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const ParameterBox box{breaks[k], breaks[k + 1], 0, 1};

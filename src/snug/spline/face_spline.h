@@ -20,12 +20,11 @@ struct FacePart {
       distance;  ///< of the surface from the polynomial at most, parameter by parameter; beside the polynomial's own error
 };
 
-/// The B-spline surface of parts that cover a rectangle from (0, 0) and join smoothly. Knots are where parts end, but for those
-/// where polynomials only go on.
+/// The B-spline surface of parts that cover a rectangle from (0, 0) and join smoothly. Knots are where parts end.
 /// Requires:  parts of one degree; `natural`: of the scheme, which may be less.
 [[nodiscard]] SplineSurface spline_of(std::span<const FacePart> parts, std::size_t natural);
 /// Upper bound of the distance of the surface that the parts stand for from a B-spline surface, parameter by parameter, rounding
-/// included. `spans` is raised by the number of its polynomials.
+/// included.
 /// Requires:  the spline's parameters cover those of the parts, and its degree is theirs.
 [[nodiscard]] double distance_bound(std::span<const FacePart> parts, const SplineSurface& spline);
 
@@ -34,8 +33,8 @@ struct FacePart {
 /// A part of a curve; parameters rise from 0.
 [[nodiscard]] SplineCurve part_of(const SplineCurve& curve, double begin, double end);
 [[nodiscard]] SplineCurve reversed(const SplineCurve& curve);
-/// Upper bound of their distance, parameter by parameter, rounding included.
-/// Requires:  the same range of parameters.
+/// Upper bound of their distance over the parameters of `a`, rounding included.
+/// Requires:  `b` has them, too; differences of knots are exact.
 [[nodiscard]] double distance_bound(const SplineCurve& a, const SplineCurve& b);
 /// The distinct knots.
 [[nodiscard]] std::vector<double> breaks_of(const std::vector<double>& knots);
