@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "answer_writer.h"
 #include "common.h"
 #include "progress_bar.h"
 
@@ -34,49 +35,38 @@ std::string name_of_part(const Options& options) {
   return options.mesh == "-" ? "part" : std::filesystem::path(options.mesh).stem().string();
 }
 
-struct Counts {
-  std::size_t solids = 0, voids = 0, sheets = 0;
-};
-Counts counted(const Brep& brep) {
-  Counts counts;
-  for (const Brep::Shell& shell : brep.shells)
-    ++(shell.void_of ? counts.voids : shell.closed ? counts.solids : counts.sheets);
-  return counts;
-}
-
 std::string number_of(std::size_t count, const char* word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
 }
 
 void write_summary(Report& report, const Options& options, double error, const Brep& brep,
                    std::size_t bytes) {
-  const Counts counts = counted(brep);
   if (report.json()) {
     JsonWriter& json = report.write();
-    json.field("error", error).field("error_bound", brep.error).field("gap_bound", brep.gap);
-    json.field("break_angle", brep.break_angle).field("complete", brep.complete);
-    json.field("solids", counts.solids).field("voids", counts.voids).field("sheets", counts.sheets);
-    json.field("faces", brep.faces.size()).field("edges", brep.edges.size()).field("spans", brep.spans);
+    json.field("error", error);
+    write_fields(json, brep);
     json.field("bytes", bytes).field("units", options.units);
   }
   std::string shapes;
   const auto add = [&](std::size_t count, const char* word) {
     if (count > 0) shapes += (shapes.empty() ? "" : ", ") + number_of(count, word);
   };
-  add(counts.solids, "solid");
-  add(counts.voids, "hollow");
-  add(counts.sheets, "open sheet");
+  add(fields::solids(brep), "solid");
+  add(fields::voids(brep), "void");
+  add(fields::sheets(brep), "open sheet");
   const std::string unit = options.units == "inch" ? "in" : options.units;
-  report.text(fmt::format("{}: {} of {}, {} spans, {} bytes, in {}", options.output, shapes,
+  report.text(fmt::format("{}: {}; {}, {} spans, {} bytes, in {}", options.output, shapes,
                           number_of(brep.faces.size(), "B-spline face"), brep.spans, bytes, unit));
-  report.text(fmt::format(
-      "no farther from the limit surface than {} {}; faces no farther from their edges than {:.1e}",
-      text_at_most(brep.error, true), unit, 1.06 * brep.gap));  // an upper bound in two digits
+  report.text(fmt::format("faces within {} {} of the limit surface and {:.1e} {} of their edges: proved",
+                          text_at_most(brep.error_bound, true), unit, 1.06 * brep.gap_bound,
+                          unit));  // rounded up
   if (brep.break_angle > 0)
-    report.text(fmt::format("across smooth edges faces turn by {:.3g} degrees at most, where looked",
+    report.text(fmt::format("largest angle between faces measured across smooth edges: {:.3g} degrees",
                             brep.break_angle));
-  if (!brep.complete)
-    report.text("not all that was asked for was reached: give a larger --error or --max-angle");
+  if (brep.outcome == Outcome::budget_spent)
+    report.text("the budget is spent: give a larger --max-splits, --error or --max-angle");
+  else if (brep.outcome != Outcome::complete)
+    report.text("the error or angle was not reached: give a larger --error or --max-angle");
 }
 
 ExitStatus run(const Options& options) {
@@ -104,7 +94,7 @@ ExitStatus run(const Options& options) {
   file.write(text);
   report.heads({options.mesh}, {name_of(surface.scheme())});
   if (options.output != "-" || report.json()) write_summary(report, options, error, brep, text.size());
-  return report.finish(brep.complete, {&file});
+  return report.finish(brep.outcome == Outcome::complete, {&file});
 }
 
 }  // namespace
@@ -120,15 +110,17 @@ Command convert_command() {
            "0.01mm "
            "(default 0.01%)");
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
-           "Largest angle of faces across edges in which the surface is smooth; 0 for any")
+           "Largest angle between faces across edges where the surface is smooth; 0 for any")
       .between(0, 90);
-  list.add(Group::own, "--units UNIT", &options->units, "What the mesh's units are")
+  list.add(Group::own, "--units UNIT", &options->units, "Units of the mesh")
       .one_of({"mm", "cm", "m", "inch"});
   list.add(Group::own, "--name NAME", &options->name, "Name of the part; default: the file's");
   list.add(Group::own, "--protocol NAME", &options->protocol, "Application protocol of the STEP file")
       .one_of({"ap242", "ap214"});
   add_common_options(list, *options);
-  list.add(Group::effort, "--max-splits N", &options->max_splits, "At most N spans");
+  list.add(Group::effort, "--max-splits N", &options->max_splits,
+           "At most N spans, polynomial pieces of faces; if more are needed, write what is proved and exit "
+           "with status 5");
   return {"convert",
           Topic::files,
           "Write a STEP file of B-spline faces within a proved distance of the limit surface",

@@ -12,10 +12,6 @@ namespace snug {
 
 class Surface;
 
-namespace default_splits {
-inline constexpr std::uint64_t brep = 10'000'000;
-}
-
 /// A B-spline curve: points.size() + degree + 1 knots in rising order, of which the first and the last degree + 1 are equal.
 struct SplineCurve {
   unsigned degree = 0;
@@ -46,26 +42,25 @@ struct Brep {
     SplineSurface surface;
     std::vector<Side> loop;  ///< all of its border, counter-clockwise seen from outside
     std::uint32_t owner;     ///< a face of the mesh that it lies over; in a dual scheme, a vertex
-    double error;            ///< proved: at each parameter no farther from the limit point there than this
+    double error_bound;      ///< proved: at every parameter, largest distance from the limit point there
   };
   /// Faces that edges join: faces[begin] to faces[end - 1].
   struct Shell {
     std::uint32_t begin, end;
     bool closed;
-    std::optional<std::uint32_t>
-        void_of{};  ///< the shell around it, if it is a hollow inside of another one's solid
+    std::optional<std::uint32_t> void_of{};  ///< of a void: the outer shell of the solid that it lies in
   };
 
   std::vector<Point3> vertices;
   std::vector<Edge> edges;
   std::vector<Face> faces;
   std::vector<Shell> shells;
-  double error = 0;  ///< the largest of the faces'
-  double gap = 0;    ///< proved: borders of faces and the curves of their edges are nowhere farther apart
+  double error_bound = 0;  ///< proved: the largest one of the faces
+  double gap_bound = 0;    ///< proved: largest distance of a face's border from the curves and vertices on it
   double break_angle =
-      0;  ///< degrees: largest angle of faces across edges in which the surface is smooth, where it was looked
-  std::size_t spans = 0;  ///< polynomials in all faces
-  bool complete = true;   ///< are `error` and `break_angle` as small as requested?
+      0;  ///< degrees: largest angle between faces measured across edges where the surface is smooth
+  std::size_t spans = 0;                ///< polynomial pieces in all faces
+  Outcome outcome = Outcome::complete;  ///< are error_bound and break_angle as small as requested?
 };
 
 struct BrepOptions {
@@ -75,16 +70,19 @@ struct BrepOptions {
   std::optional<double> max_angle{};
 };
 
-/// A limit surface as B-spline faces: exact, up to rounding, where it is polynomial; beside extraordinary vertices and decaying
-/// creases with as many spans as the error takes. Regular faces in rows and columns become one.
+/// A limit surface as B-spline faces: exact, up to rounding, wherever it is polynomial; beside extraordinary vertices and
+/// semi-sharp creases approximated with as many spans as the error takes. Regular faces that form a rectangle become one.
 ///
-/// Guarantee: Brep::error, Brep::Face::error and Brep::gap are proved for the doubles returned, whether it is `complete` or not.
-///            Neighbours share their edges; of a closed surface each belongs to two faces.
-/// Budget:    10,000,000 spans; a kilobyte each. Of more than 2,000 closed shells none is looked for in another.
-/// Errors:    InputError: (value) for an error that is not finite and positive, or smaller than doubles allow; (refused) for a
-///            scheme of triangles, for an edge of more than two faces or with faces that run along it in the same direction, and
-///            for a face that is its own neighbour; (unrepresentable). Interrupted.
-/// Cost:      10 microseconds a regular face, 200 beside an extraordinary vertex.
+/// Guarantee: error_bound and gap_bound are proved for the doubles returned, whatever the outcome. Faces share their edges: an
+///            edge belongs to two faces, on a border to one.
+/// Not proved: break_angle, and which closed shells are voids (at most 2,000 shells are compared).
+/// Budget:    10,000,000 spans; a kilobyte each.
+/// Errors:    InputError: (value) for an error that is not finite and positive or too small for doubles, for an angle out of
+///            range, and for a budget below one span a quad; (refused) for a scheme of triangles or Midedge, for an edge with more than two
+///            faces or with two that run along it in the same direction, and for a face that is its own neighbour;
+///            (unrepresentable). Interrupted.
+/// Cost:      10 microseconds a regular face, 200 beside an extraordinary vertex, up to 20 milliseconds beside creases of high
+///            sharpness.
 /// Source:    docs/derivations/brep.md.
 [[nodiscard]] SNUG_API Brep to_brep(const Surface& surface, const BrepOptions& options = {},
                                     const Run& run = {});
@@ -98,7 +96,7 @@ struct StepOptions {
   bool ap214 = false;  ///< an older protocol than AP242, for readers that know no other
 };
 
-/// A part as STEP text (ISO 10303-21): a solid for each closed shell that is no void, a surface model of the others.
+/// A part as STEP text (ISO 10303-21): a solid for each closed shell that is not a void, a surface model for each open one.
 /// Guarantee: coordinates are read back as the same doubles.
 [[nodiscard]] SNUG_API std::string format_step(const Brep& brep, const StepOptions& options = {});
 /// The same to a file, completely or not at all. Returns its bytes. Errors: InputError (unreadable).

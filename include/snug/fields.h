@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <type_traits>
 
 #include <snug/bound.h>
+#include <snug/brep.h>
 #include <snug/collide.h>
 #include <snug/contacts.h>
 #include <snug/distance.h>
@@ -65,6 +67,20 @@ struct MeasureStats {
 inline SelfContactStats self_contact_stats(const SelfContact& t) { return {t.stars, t.pair_tests, t.levels}; }
 inline MeasureStats measure_stats(const Measures& t) { return {t.splits}; }
 inline bool is_closed(const Measures& t) { return t.volume.has_value(); }
+inline std::size_t solids(const Brep& t) {
+  return static_cast<std::size_t>(std::count_if(t.shells.begin(), t.shells.end(),
+                                                [](const Brep::Shell& s) { return s.closed && !s.void_of; }));
+}
+inline std::size_t voids(const Brep& t) {
+  return static_cast<std::size_t>(std::count_if(t.shells.begin(), t.shells.end(),
+                                                [](const Brep::Shell& s) { return s.void_of.has_value(); }));
+}
+inline std::size_t sheets(const Brep& t) {
+  return static_cast<std::size_t>(
+      std::count_if(t.shells.begin(), t.shells.end(), [](const Brep::Shell& s) { return !s.closed; }));
+}
+inline std::size_t face_count(const Brep& t) { return t.faces.size(); }
+inline std::size_t edge_count(const Brep& t) { return t.edges.size(); }
 inline const Place& place(const LimitPoint& t) { return *t.at; }
 inline const Place& nearest_place(const SignedDistance& t) { return *t.nearest.at; }
 inline const Point3& nearest_point(const SignedDistance& t) { return t.nearest.point; }
@@ -397,6 +413,24 @@ inline constexpr auto fields_of<HullProblem> = std::tuple{
     Field{"inner", &HullProblem::inner, "Is it the inner hull's?"},
     Field{"place", &HullProblem::place, "A point there."},
     Field{"owner", &HullProblem::owner, "The face there (of dual schemes the vertex)."},
+};
+
+template <>
+inline constexpr auto fields_of<Brep> = std::tuple{
+    Field{"error_bound", &Brep::error_bound,
+          "Proved: at every parameter a face is no farther than this from the limit point there."},
+    Field{"gap_bound", &Brep::gap_bound,
+          "Proved: borders of faces are no farther than this from the edges and vertices on them."},
+    Field{"break_angle", &Brep::break_angle,
+          "Degrees: the largest angle between faces measured across edges where the surface is smooth."},
+    Field{"outcome", &Brep::outcome,
+          "'complete': error and angle are as small as requested; else 'budget-spent' or 'at-rounding'."},
+    Field{"solids", fields::solids, "Closed shells that are not voids."},
+    Field{"voids", fields::voids, "Closed shells that are voids of solids."},
+    Field{"sheets", fields::sheets, "Open shells."},
+    Field{"faces", fields::face_count, "Number of faces."},
+    Field{"edges", fields::edge_count, "Number of edges."},
+    Field{"spans", &Brep::spans, "Polynomial pieces in all faces."},
 };
 
 template <>

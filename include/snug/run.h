@@ -78,11 +78,11 @@ struct Run {
 
 /// What Run::max_splits is if it is not given, in the unit that each function names under "Budget".
 namespace default_splits {
-inline constexpr std::uint64_t ray = 20'000, penetration = 20'000, contacts = 200'000, bound = 1'000'000,
-                               closest_point = 1'000'000, collide = 1'000'000, distance = 1'000'000,
-                               hull = 1'000'000, envelope = 4'000'000, self_contact = 1'000'000,
-                               time_of_contact = 1'000'000, tessellate = 5'000'000, measure = 10'000'000,
-                               deviation = 50'000'000;
+inline constexpr std::uint64_t brep = 10'000'000, ray = 20'000, penetration = 20'000, contacts = 200'000,
+                               bound = 1'000'000, closest_point = 1'000'000, collide = 1'000'000,
+                               distance = 1'000'000, hull = 1'000'000, envelope = 4'000'000,
+                               self_contact = 1'000'000, time_of_contact = 1'000'000, tessellate = 5'000'000,
+                               measure = 10'000'000, deviation = 50'000'000;
 }  // namespace default_splits
 
 /// How a search ended. Answers hold for every outcome, but hulls; only `complete` ones are as narrow or as fine as

@@ -6,6 +6,7 @@
 
 #include "answers.h"
 #include "call.h"
+#include "fields.h"
 #include "surface.h"
 
 namespace snug::python {
@@ -17,24 +18,6 @@ LengthUnit unit_named(const std::string& word) {
   if (word == "m") return LengthUnit::metre;
   if (word == "inch") return LengthUnit::inch;
   throw py::value_error("units: '" + word + "' is none of mm, cm, m and inch");
-}
-
-py::dict summary_of(const Brep& brep, std::size_t bytes) {
-  std::size_t solids = 0, voids = 0, sheets = 0;
-  for (const Brep::Shell& shell : brep.shells) ++(shell.void_of ? voids : shell.closed ? solids : sheets);
-  py::dict summary;
-  summary["error_bound"] = brep.error;
-  summary["gap_bound"] = brep.gap;
-  summary["break_angle"] = brep.break_angle;
-  summary["complete"] = brep.complete;
-  summary["solids"] = solids;
-  summary["voids"] = voids;
-  summary["sheets"] = sheets;
-  summary["faces"] = brep.faces.size();
-  summary["edges"] = brep.edges.size();
-  summary["spans"] = brep.spans;
-  summary["bytes"] = bytes;
-  return summary;
 }
 
 py::dict write_step(const PySurface& self, const py::object& file, const py::object& error,
@@ -55,7 +38,9 @@ py::dict write_step(const PySurface& self, const py::object& file, const py::obj
     const std::size_t size = snug::write_step(made, path, options);
     return std::pair(std::move(made), size);
   });
-  return summary_of(brep, bytes);
+  py::dict answer = dict_of(brep, {});
+  answer["bytes"] = bytes;
+  return answer;
 }
 
 }  // namespace
@@ -69,16 +54,16 @@ void add_brep(py::class_<PySurface>& cls) {
       arg("threads") = 0, arg("progress") = none,
       "Writes the surface as a STEP file of B-spline faces that share their edges, for CAD; schemes of "
       "quads.\n\n"
-      "error: largest distance from the limit surface, either way; mesh units or percent of the size (0.01 "
-      "%). "
-      "max_angle:\n"
-      "of faces across smooth edges, in degrees. units: what mesh units are, mm, cm, m or inch. protocol: "
-      "ap242 or "
-      "ap214.\n\n"
-      "Returns a dict: error_bound and gap_bound (how far faces are from their edges) are proved, "
-      "break_angle is "
+      "error: largest distance from the limit surface, either way, in mesh units or percent of the size "
+      "(0.01 %).\n"
+      "max_angle: between faces across smooth edges, in degrees. units of the mesh: mm, cm, m or inch. "
+      "protocol:\n"
+      "ap242 or ap214.\n\n"
+      "Returns a dict: error_bound and gap_bound (of faces from their edges), both proved; break_angle, "
       "measured;\n"
-      "complete, solids, voids, sheets, faces, edges, spans, bytes. Raises ValueError, MeshError, OSError.");
+      "outcome, solids, voids, sheets, faces, edges, spans, bytes. Where the budget of max_splits spans is "
+      "spent the\n"
+      "file is written as far as it was proved. Raises ValueError, MeshError, OSError.");
 }
 
 }  // namespace snug::python

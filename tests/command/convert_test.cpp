@@ -26,7 +26,7 @@ TEST(convert, writes_a_solid_and_says_how_near_it_is) {
   EXPECT_EQ(found["error"], 0.001);
   EXPECT_LE(found["error_bound"], 0.001);
   EXPECT_LE(found["gap_bound"], 1e-13);
-  EXPECT_EQ(found["complete"], true);
+  EXPECT_EQ(found["outcome"], "complete");
   EXPECT_EQ(found["solids"], 1);
   EXPECT_EQ(found["sheets"], 0);
   EXPECT_GE(found["spans"], found["faces"]);

@@ -432,6 +432,7 @@ TEST(declarations, of_the_command_are_those_of_the_fields) {
       .tells<BoundSummary>(table)
       .and_of_its_own({"enclosures", "face", "part", "piece", "level", "lower", "upper", "base", "radius",
                        "corners", "normals"});
+  Page("convert.md").tells<Brep>("JSON:");
   Page("measure.md")
       .tells<Measures>(table)
       .tells<fields::MeasureStats>("| `stats` |")

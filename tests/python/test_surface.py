@@ -318,7 +318,7 @@ def test_view(cube, tmp_path):
 def test_write_step(tmp_path):
     cube = snug.read(MODELS / "bracket.obj")
     found = cube.write_step(tmp_path / "part.step", "0.1%", units="inch", name="a part")
-    assert found["complete"] and found["solids"] == 1 and found["sheets"] == 0
+    assert found["outcome"] == "complete" and found["solids"] == 1 and found["sheets"] == 0
     assert found["error_bound"] <= 0.001 * cube.size and found["gap_bound"] < 1e-12
     text = (tmp_path / "part.step").read_text()
     assert len(text) == found["bytes"]

@@ -86,8 +86,8 @@ void expect_joined(const Brep& brep) {
     }
   }
   for (const Brep::Edge& edge : brep.edges) {
-    EXPECT_LE(distance_of(edge.curve.points.front(), brep.vertices[edge.vertices[0]]), brep.gap);
-    EXPECT_LE(distance_of(edge.curve.points.back(), brep.vertices[edge.vertices[1]]), brep.gap);
+    EXPECT_LE(distance_of(edge.curve.points.front(), brep.vertices[edge.vertices[0]]), brep.gap_bound);
+    EXPECT_LE(distance_of(edge.curve.points.back(), brep.vertices[edge.vertices[1]]), brep.gap_bound);
   }
 }
 
@@ -115,7 +115,7 @@ void expect_edges_on_faces(const Brep& brep) {
   double largest = 0;
   for (const Point3& p : brep.vertices)
     largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-  const double slack = brep.gap * (1 + 1e-6) + 1e-18 * largest;
+  const double slack = brep.gap_bound * (1 + 1e-6) + 1e-18 * largest;
   for (const Brep::Face& face : brep.faces) {
     const SplineSurface& s = face.surface;
     const double w = s.u_knots.back(), h = s.v_knots.back();
@@ -180,17 +180,17 @@ TEST(brep, faces_are_as_near_as_they_say_with_every_tag_and_rule) {
       continue;
     }
     ++made;
-    complete += brep.complete ? 1 : 0;
+    complete += brep.outcome == Outcome::complete ? 1 : 0;
     expect_joined(brep);
-    EXPECT_LE(brep.gap, 1e-12) << c.name;
+    EXPECT_LE(brep.gap_bound, 1e-12) << c.name;
     expect_edges_on_faces(brep);
     for (const Brep::Face& face : brep.faces) {
-      EXPECT_LE(face.error, brep.error);
+      EXPECT_LE(face.error_bound, brep.error_bound);
       for (int k = 0; k < 2; ++k) {
         const double u = unit(random) * face.surface.u_knots.back(),
                      v = unit(random) * face.surface.v_knots.back();
         const ClosestPoint found = closest_point(*surface, point_of(face.surface, u, v), {.absolute = 1e-7});
-        EXPECT_LE(found.distance.lower, face.error + 1e-12);
+        EXPECT_LE(found.distance.lower, face.error_bound + 1e-12);
       }
     }
     if (::testing::Test::HasFailure()) return;
@@ -207,7 +207,7 @@ TEST(brep, of_a_solid_bounds_its_volume) {
       SCOPED_TRACE(std::string(name) + ", " + name_of(scheme));
       const Surface surface(testing::control_mesh(mesh), {.scheme = scheme});
       const Brep brep = to_brep(surface, {.error = 5e-3});
-      EXPECT_TRUE(brep.complete);
+      EXPECT_EQ(brep.outcome, Outcome::complete);
       ASSERT_EQ(brep.shells.size(), 1u);
       EXPECT_TRUE(brep.shells[0].closed);
       EXPECT_EQ(brep.vertices.size() - brep.edges.size() + brep.faces.size(), 2u);
@@ -215,8 +215,8 @@ TEST(brep, of_a_solid_bounds_its_volume) {
       for (const Brep::Face& face : brep.faces) volume += flux(face.surface);
       const Measures exact = measure(surface);
       area = exact.area.upper;
-      EXPECT_GE(volume, exact.volume->lower - 2 * brep.error * area - 1e-6);
-      EXPECT_LE(volume, exact.volume->upper + 2 * brep.error * area + 1e-6);
+      EXPECT_GE(volume, exact.volume->lower - 2 * brep.error_bound * area - 1e-6);
+      EXPECT_LE(volume, exact.volume->upper + 2 * brep.error_bound * area + 1e-6);
       EXPECT_GT(volume, 0);
     }
   }
@@ -227,13 +227,13 @@ TEST(brep, tips_come_nearer_and_breaks_become_flatter) {
   std::size_t spans = 0;
   for (const double error : {1e-2, 1e-3, 1e-4, 1e-6}) {
     const Brep brep = to_brep(surface, {.error = error});
-    EXPECT_TRUE(brep.complete);
-    EXPECT_LE(brep.error, error);
+    EXPECT_EQ(brep.outcome, Outcome::complete);
+    EXPECT_LE(brep.error_bound, error);
     EXPECT_GT(brep.spans, spans);
     spans = brep.spans;
   }
   const Brep flat = to_brep(surface, {.error = 1e-2, .max_angle = 0.05});
-  EXPECT_TRUE(flat.complete);
+  EXPECT_EQ(flat.outcome, Outcome::complete);
   EXPECT_LE(flat.break_angle, 0.05);
   EXPECT_GT(to_brep(surface, {.error = 1e-2}).break_angle, 0.05);
 }
@@ -253,7 +253,7 @@ TEST(brep, edges_lie_on_faces_far_away_and_beside_polygons) {
       const Brep brep = to_brep(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.error = 0.01});
       expect_joined(brep);
       expect_edges_on_faces(brep);
-      EXPECT_LE(brep.gap, 1e-12 + 1e-15 * away);
+      EXPECT_LE(brep.gap_bound, 1e-12 + 1e-15 * away);
     }
   }
 }
@@ -274,7 +274,7 @@ TEST(brep, has_the_tangent_plane_of_a_border_of_quads_and_triangles) {
   }
   const Brep brep = to_brep(surface, {.error = 1e-3});
   expect_edges_on_faces(brep);
-  EXPECT_LE(brep.gap, 1e-13);
+  EXPECT_LE(brep.gap_bound, 1e-13);
 }
 
 // Of a torus of regular quads rows become faces; none is beside itself.
@@ -296,9 +296,14 @@ TEST(brep, regular_quads_in_rows_and_columns_are_one_face) {
   }
   const Surface surface(torus, {.scheme = Scheme::catmark});
   const Brep brep = to_brep(surface);
+  double volume = 0;
+  for (const Brep::Face& face : brep.faces) volume += flux(face.surface);
+  const Interval exact = *measure(surface).volume;
+  EXPECT_GE(volume, exact.lower - 1e-6);
+  EXPECT_LE(volume, exact.upper + 1e-6);
   EXPECT_LE(brep.faces.size(), 6u);
   EXPECT_EQ(brep.spans, std::size_t{m} * n);
-  EXPECT_LE(brep.error, 1e-13);
+  EXPECT_LE(brep.error_bound, 1e-13);
   EXPECT_EQ(brep.vertices.size() + brep.faces.size(), brep.edges.size());
   expect_joined(brep);
 }
@@ -382,11 +387,24 @@ TEST(brep, says_what_it_cannot_do) {
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.error = 0}).find("not a positive"), std::string::npos);
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.error = 1e-14}).find("the least is"),
             std::string::npos);
-  EXPECT_THROW(
-      static_cast<void>(to_brep(Surface(testing::control_mesh(meshes::cube()), {.scheme = Scheme::catmark}),
-                                {.error = 1e-4}, {.max_splits = 500})),
-      InputError);
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.max_angle = 91}).find("degrees"), std::string::npos);
+}
+
+// What is handed out fits the budget and is proved; below one span a quad nothing is.
+TEST(brep, keeps_the_budget) {
+  const Surface surface(testing::control_mesh(meshes::cube()), {.scheme = Scheme::catmark});
+  double last = INFINITY;
+  for (const std::uint64_t budget : {24u, 100u, 300u, 5000u}) {
+    const Brep brep = to_brep(surface, {.error = 1e-5}, {.max_splits = budget});
+    EXPECT_LE(brep.spans, budget);
+    EXPECT_EQ(brep.outcome, budget < 5000 ? Outcome::budget_spent : Outcome::complete) << budget;
+    EXPECT_LE(brep.error_bound, last);
+    last = brep.error_bound;
+    expect_joined(brep);
+    expect_edges_on_faces(brep);
+    EXPECT_LE(brep.gap_bound, 1e-13);
+  }
+  EXPECT_THROW(static_cast<void>(to_brep(surface, {}, {.max_splits = 20})), InputError);
 }
 
 TEST(brep, does_not_depend_on_threads) {

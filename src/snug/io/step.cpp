@@ -118,7 +118,7 @@ class StepWriter {
   [[nodiscard]] double uncertainty() const {
     Box3 box;
     for (const Point3& p : brep_.vertices) box.add(p);
-    return std::max({16 * brep_.gap, 1e-9 * longest_side(box), 1e-300});
+    return std::max({16 * brep_.gap_bound, 1e-9 * longest_side(box), 1e-300});
   }
 
   std::size_t spline(const SplineCurve& curve) {

@@ -8,21 +8,21 @@
 
 namespace snug {
 
-/// A number of an entity.
+/// Refers to an entity by its number.
 struct StepRef {
   std::size_t number;
 };
 
 /// Adds a real as ISO 10303-21 writes it, with a decimal point; it is read back as the same double.
 void append_step_real(std::string& text, double x);
-/// A string in quotes; other characters than those of ASCII as \X2\...\X0\.
+/// A quoted string; characters outside ASCII become \X2\...\X0\.
 [[nodiscard]] std::string step_string(std::string_view utf8);
 
 /// The text of an exchange structure, entity by entity.
 class StepText {
  public:
   void begin(const std::string& name, std::string_view schema);
-  /// An entity of such parts; its number.
+  /// Adds an entity whose text is these parts; returns its number.
   template <class... Parts>
   std::size_t add(const Parts&... parts) {
     text_ += '#';
@@ -34,7 +34,7 @@ class StepText {
   }
   std::size_t point(const Point3& p);
   std::size_t direction(const Vector3& v);
-  /// Adds #number to a list that commas part.
+  /// Appends #number to a comma-separated list.
   static void list(std::string& list, std::size_t number);
   [[nodiscard]] std::string finish();
 

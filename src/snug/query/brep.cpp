@@ -29,23 +29,17 @@ constexpr std::uint8_t most_depth = 24;
 constexpr int most_angle_rounds = 12;
 constexpr double degrees = 57.29577951308232;
 
-// The polynomials of a quad.
-struct QuadParts {
-  std::vector<QuadPiece> pieces;
-  std::size_t degree = 0;
-
-  /// Of the B-spline surface: its knots run from side to side.
-  [[nodiscard]] std::uint64_t spans() const {
-    std::set<double> u, v;
-    for (const QuadPiece& piece : pieces) {
-      u.insert(piece.box().u0);
-      v.insert(piece.box().v0);
-    }
-    return std::uint64_t{u.size()} * v.size();
+// How many spans the B-spline surface of a quad has: knots run across all of it.
+std::uint64_t spans_of(const std::vector<QuadPiece>& pieces) {
+  std::set<double> u, v;
+  for (const QuadPiece& piece : pieces) {
+    u.insert(piece.box().u0);
+    v.insert(piece.box().v0);
   }
-};
+  return std::uint64_t{u.size()} * v.size();
+}
 
-// One surface on its way to faces.
+// Makes the boundary representation of one surface.
 class BrepMaker {
  public:
   BrepMaker(const LimitSurface& surface, const BrepOptions& options, const Run& run)
@@ -56,20 +50,25 @@ class BrepMaker {
         back_(surface.scale().inverse()),
         error_(scaled_error(options)),
         max_angle_(options.max_angle),
-        degree_(tensor_degree(surface.rules().basis)) {
+        degree_(tensor_degree(surface.rules().basis)),
+        budget_(run.max_splits.value_or(default_splits::brep)) {
     for (std::uint32_t q = 0; q < layout_.quads().size(); ++q) {
       if (!surface.kind(layout_.quads()[q].patch).polynomial()) irregular_.push_back(q);
     }
-    parts_.resize(layout_.quads().size());
+    pieces_.resize(layout_.quads().size());
   }
 
   [[nodiscard]] Brep run() {
-    std::vector<std::uint32_t> all(parts_.size());
+    std::vector<std::uint32_t> all(pieces_.size());
     for (std::uint32_t q = 0; q < all.size(); ++q) all[q] = q;
     fit(all, 0);
+    if (spans() > budget_) {
+      throw InputError(InputProblem::value,
+                       "at least " + std::to_string(spans()) + " spans are needed: give a larger budget");
+    }
     refine_tips();
     drafts_ = layout_.packed([this](std::uint32_t q) -> const TensorPiece* {
-      return parts_[q].pieces.size() == 1 && degree_ > 1 ? &parts_[q].pieces.front().piece : nullptr;
+      return pieces_[q].size() == 1 && degree_ > 1 ? &pieces_[q].front().piece : nullptr;
     });
     Brep brep = assembled();
     for (int round = 0; max_angle_ && brep.break_angle > *max_angle_ && round < most_angle_rounds; ++round) {
@@ -77,7 +76,9 @@ class BrepMaker {
       refine_tips();
       brep = assembled();
     }
-    brep.complete = brep.error <= back_.apply(error_) && (!max_angle_ || brep.break_angle <= *max_angle_);
+    const bool reached =
+        brep.error_bound <= back_.apply(error_) && (!max_angle_ || brep.break_angle <= *max_angle_);
+    brep.outcome = outcome_of(reached, spent_);
     return brep;
   }
 
@@ -103,7 +104,7 @@ class BrepMaker {
     return text;
   }
 
-  // Polynomials of some quads, by today's depths.
+  // Makes the pieces of some quads, by their present depths.
   void fit(const std::vector<std::uint32_t>& quads, double done) {
     std::atomic<std::size_t> count{0};
     parallel_for_with(
@@ -111,8 +112,7 @@ class BrepMaker {
         [&](Patch& patch, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             surface_.patch(layout_.quads()[quads[i]].patch, patch);
-            QuadPieces made(patch, layout_.depths(quads[i]), share_of_fits * error_);
-            parts_[quads[i]] = {made.take(), made.degree()};
+            pieces_[quads[i]] = QuadPieces(patch, layout_.depths(quads[i]), share_of_fits * error_).take();
           }
           count += end - begin;
           monitor_.report(
@@ -120,23 +120,30 @@ class BrepMaker {
         });
   }
 
-  void require_budget() const {
-    std::uint64_t spans = 0;
-    for (const QuadParts& parts : parts_) spans += parts.spans();
-    if (spans > run_.max_splits.value_or(default_splits::brep)) {
-      throw InputError(InputProblem::value,
-                       "more than " + std::to_string(run_.max_splits.value_or(default_splits::brep)) +
-                           " spans: give a larger error or budget");
-    }
+  [[nodiscard]] std::uint64_t spans() const {
+    std::uint64_t sum = 0;
+    for (const std::vector<QuadPiece>& pieces : pieces_) sum += spans_of(pieces);
+    return sum;
   }
 
-  // Splits towards tips that are too far from the surface.
+  // The same for quads whose depths have changed. If the budget does not allow it they keep their pieces, and the result is false.
+  bool fit_changed() {
+    changed_ = layout_.take_changed(irregular_);
+    std::vector<std::vector<QuadPiece>> before;
+    for (const std::uint32_t q : changed_) before.push_back(pieces_[q]);
+    fit(changed_, 0.7);
+    if (spans() <= budget_) return true;
+    for (std::size_t k = 0; k < changed_.size(); ++k) pieces_[changed_[k]] = std::move(before[k]);
+    spent_ = true;
+    return false;
+  }
+
+  // Splits at tips that are too far from the surface, until none is or the budget is spent.
   void refine_tips() {
-    std::vector<std::uint32_t> looked = irregular_;
-    while (!looked.empty()) {
-      require_budget();
-      for (const std::uint32_t q : looked) {
-        for (const QuadPiece& piece : parts_[q].pieces) {
+    changed_ = irregular_;
+    while (!changed_.empty() && !spent_) {
+      for (const std::uint32_t q : changed_) {
+        for (const QuadPiece& piece : pieces_[q]) {
           if (piece.tip && piece.corners() == 0) layout_.join_depths(q, piece);
           if (!piece.tip || piece.distance <= share_of_fits * error_) continue;
           const double levels = std::log(piece.distance / (share_of_fits * error_)) / std::log(level_factor);
@@ -145,26 +152,23 @@ class BrepMaker {
         }
       }
       layout_.level_depths();
-      looked = layout_.take_changed(irregular_);
-      fit(looked, 0.7);
+      fit_changed();
     }
   }
 
+  // Splits at tips beside tangent breaks that are too large; false if nothing was split.
   bool deepen_at_breaks() {
     for (const auto& [quad, piece] : breaks_) layout_.deepen(quad, piece, 1, most_depth);
-    const std::vector<std::uint32_t> changed = layout_.take_changed(irregular_);
-    fit(changed, 0.7);
-    return !changed.empty();
+    return fit_changed() && !changed_.empty();
   }
 
   [[nodiscard]] std::vector<FacePart> parts_of(const FaceDraft& draft) const {
     std::vector<FacePart> parts;
-    Patch patch;
     for (std::size_t y = 0; y < draft.height; ++y) {
       for (std::size_t x = 0; x < draft.width; ++x) {
         const PlacedQuad& placed = draft.at(x, y);
         const Point3 origin = origins_[placed.quad];
-        for (const QuadPiece& piece : parts_[placed.quad].pieces) {
+        for (const QuadPiece& piece : pieces_[placed.quad]) {
           const ParameterBox box = piece.box();
           const double u = static_cast<double>(x), v = static_cast<double>(y);
           parts.push_back({{u + box.u0, u + box.u1, v + box.v0, v + box.v1},
@@ -179,12 +183,12 @@ class BrepMaker {
   }
 
   Brep assembled() {
-    origins_.resize(parts_.size());
+    origins_.resize(pieces_.size());
     Brep brep;
     brep.faces.resize(drafts_.size());
     std::vector<std::size_t> spans(drafts_.size());
     std::atomic<std::size_t> count{0};
-    parallel_for(parts_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(pieces_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       Patch patch;
       for (std::size_t q = begin; q < end; ++q) {
         surface_.patch(layout_.quads()[q].patch, patch);
@@ -203,7 +207,7 @@ class BrepMaker {
     });
     for (std::size_t f = 0; f < drafts_.size(); ++f) {
       brep.spans += spans[f];
-      brep.error = std::max(brep.error, brep.faces[f].error);
+      brep.error_bound = std::max(brep.error_bound, brep.faces[f].error_bound);
     }
     join(brep);
     measure_breaks(brep);
@@ -217,13 +221,13 @@ class BrepMaker {
     const std::vector<FacePart> parts = parts_of(draft);
     SplineSurface& spline = face.surface;
     spline = spline_of(parts, degree_);
-    // What is proved is proved of the points that are handed out.
+    // The bound is proved for the points that are handed out.
     SplineSurface scaled = spline;
     for (std::size_t i = 0; i < spline.points.size(); ++i) {
       spline.points[i] = require_representable(back_.apply(spline.points[i]));
       scaled.points[i] = surface_.scale().apply(spline.points[i]);
     }
-    face.error = unscaled_up(distance_bound(parts, scaled), back_);
+    face.error_bound = unscaled_up(distance_bound(parts, scaled), back_);
     face.owner = surface_.place(layout_.quads()[draft.at(0, 0).quad].patch).owner;
   }
 
@@ -241,7 +245,7 @@ class BrepMaker {
         SplineCurve other = curve_of(brep, joint.uses[1], true);
         if (other.points.size() < edge.curve.points.size()) edge.curve = std::move(other);
       }
-      // What is handed out, against the borders themselves.
+      // The curve that is handed out is compared with the borders themselves.
       const SplineCurve curve = scaled(edge.curve);
       for (std::size_t k = 0; k < joint.count; ++k)
         gap = std::max(
@@ -259,18 +263,18 @@ class BrepMaker {
         edge.vertices[k] = vertex;
       }
     }
-    brep.gap = unscaled_up(gap, back_);
+    brep.gap_bound = unscaled_up(gap, back_);
     for (Brep::Face& face : brep.faces) face.loop.clear();
     for (const LoopSide& side : layout_.loops(drafts_, joints_))
       brep.faces[side.face].loop.push_back({side.joint, side.reversed});
   }
-  // Along the joint.
+  // The part of a face's border along a joint, in its direction.
   static SplineCurve curve_of(const Brep& brep, const JointUse& use, bool backwards) {
     const SplineCurve curve = part_of(side_of(brep.faces[use.face].surface, use.side), use.begin, use.end);
     return backwards ? reversed(curve) : curve;
   }
-  // All of the side, by the parameters of a curve of this length along the joint. A side of a quad beside two quads of a polygon is
-  // half as long by its own: a power of two.
+  // All of the border, with the parameters of a curve of this length along the joint. Where a quad adjoins two quads of a polygon
+  // these differ by a factor of two.
   static SplineCurve border_of(const Brep& brep, const JointUse& use, bool backwards, double length) {
     SplineCurve border = side_of(brep.faces[use.face].surface, use.side);
     const double begin = backwards ? border.knots.back() - use.end : use.begin;
@@ -291,7 +295,7 @@ class BrepMaker {
                        : std::array{0.0, h - t};
   }
 
-  // Angles across edges beside tips where the surface has none.
+  // Angles between faces at tips across edges where the limit surface is smooth.
   void measure_breaks(Brep& brep) {
     breaks_.clear();
     std::vector<double> angles(joints_.size());
@@ -303,7 +307,7 @@ class BrepMaker {
       if (!max_angle_ || angles[e] <= *max_angle_) continue;
       for (const JointUse& use : joints_[e].uses) {
         const std::uint32_t q = drafts_[use.face].at(0, 0).quad;
-        for (const QuadPiece& piece : parts_[q].pieces) {
+        for (const QuadPiece& piece : pieces_[q]) {
           if (piece.tip && (piece.sides() >> use.side) % 2 == 1) breaks_.emplace_back(q, piece);
         }
       }
@@ -313,7 +317,7 @@ class BrepMaker {
     if (joint.count != 2) return 0;
     const auto has_tips = [&](const JointUse& use) {
       const FaceDraft& draft = drafts_[use.face];
-      const auto& pieces = parts_[draft.at(0, 0).quad].pieces;
+      const auto& pieces = pieces_[draft.at(0, 0).quad];
       return draft.width * draft.height == 1 &&
              std::any_of(pieces.begin(), pieces.end(), [](const QuadPiece& piece) { return piece.tip; });
     };
@@ -381,8 +385,10 @@ class BrepMaker {
   double error_;  // in scaled units
   std::optional<double> max_angle_;
   std::size_t degree_;
-  std::vector<std::uint32_t> irregular_;
-  std::vector<QuadParts> parts_;  // of quads
+  std::uint64_t budget_;  // of spans
+  bool spent_ = false;
+  std::vector<std::uint32_t> irregular_, changed_;  // quads
+  std::vector<std::vector<QuadPiece>> pieces_;      // of quads
   std::vector<Point3> origins_;
   std::vector<FaceDraft> drafts_;
   std::vector<FaceJoint> joints_;

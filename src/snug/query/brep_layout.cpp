@@ -12,7 +12,7 @@ namespace {
 
 using Part = PatchSide::Part;
 
-// Sine of the angle of limit normals that count as one.
+// Sine of the angle up to which two limit normals count as equal.
 constexpr double same_normal = 1e-5;
 
 }  // namespace
@@ -50,7 +50,7 @@ BrepLayout::BrepLayout(const LimitSurface& surface)
       for (const Run& run : runs) add_use(q, k, run, runs.size() == 1);
     }
     if (!quads_[q].half) continue;
-    // Its sides are half as long: those beside it are split once more.
+    // Its sides are half as long, so quads beside it are split once more.
     for (const std::uint32_t name : quads_[q].corners) corner_depths_[name] = 2;
     for (const PatchSide& side : quads_[q].sides) side_depths_[side_name(side)] = 1;
   }
@@ -119,8 +119,7 @@ QuadDepths BrepLayout::depths(std::uint32_t quad) const {
   return depths;
 }
 
-// What a piece touches: a corner, or else a side. Corners are as deep as the sides at them, so that the sides of a quad are cut
-// alike whatever happens beside its other sides.
+// A corner is at least as deep as the sides that meet there, so that both quads on a side are split alike along it.
 void BrepLayout::deepen(std::uint32_t quad, const QuadPiece& piece, std::uint8_t levels, std::uint8_t most) {
   const SurfaceQuad& q = quads_[quad];
   const auto raise = [&](std::vector<std::uint8_t>& depths, std::vector<bool>& changed, std::uint32_t name,
@@ -200,7 +199,7 @@ struct BrepLayout::Packing {
   std::vector<std::uint32_t> face_of = std::vector<std::uint32_t>(layout.quads_.size(), none);
   std::vector<Point3> origins = std::vector<Point3>(layout.quads_.size());
 
-  // The quad beside a placed one across a side of the face, if both are one polynomial more or less: lattices overlap.
+  // The quad across a side of a placed one, if both are polynomials whose lattices overlap.
   [[nodiscard]] PlacedQuad beside(const PlacedQuad& placed, std::size_t side) const {
     const auto own = static_cast<std::size_t>((side + placed.turn) % 4);
     const Neighbour other = layout.across(placed.quad, own);
@@ -225,7 +224,7 @@ struct BrepLayout::Packing {
             std::any_of(strip.begin(), strip.end(), [&](const PlacedQuad& s) { return s.quad == quad; }));
   }
 
-  // The quads beyond a side of a face, in the order of x or y; none unless they are all there, free, and side by side.
+  // The quads beyond a side of a face, in the order of x or y, if all of them exist, are free and are neighbours; else none.
   [[nodiscard]] std::vector<PlacedQuad> strip(const FaceDraft& draft, std::size_t side,
                                               std::uint32_t face) const {
     const bool upright = side % 2 == 1;
@@ -242,7 +241,7 @@ struct BrepLayout::Packing {
       }
       strip.push_back(next);
     }
-    // A face beside itself would have a seam.
+    // A face that is its own neighbour would have a seam.
     const auto meets_itself = [&](const PlacedQuad& placed, std::size_t s) {
       return in_face(layout.across(placed.quad, (s + placed.turn) % 4).quad, face, strip);
     };
@@ -300,7 +299,7 @@ std::vector<FaceDraft> BrepLayout::packed(
 }
 
 std::vector<FaceJoint> BrepLayout::joined(const std::vector<FaceDraft>& faces) const {
-  // All segments on the borders of faces, and vertices where edges end.
+  // All segments on borders of faces, and how many of them end at each vertex.
   struct SideRun {
     Run run;
     std::uint32_t quad;
@@ -396,7 +395,7 @@ bool BrepLayout::smooth(const FaceJoint& joint, double length) const {
   std::array<std::optional<Vector3>, 2> normals;
   for (std::size_t k = 0; k < 2; ++k) {
     const Use& use = segment.uses[k];
-    // In the middle of the segment: of a side that is twice as long a quarter of it.
+    // The middle of the segment, which is a quarter of the way along a side of twice its length.
     double t = 0.5;
     if (!use.whole) t = (runs[0].segment % 2 == 0) != use.reversed ? 0.25 : 0.75;
     const std::array<Place, 4> places{{{0, 0, t, 0}, {0, 0, 1, t}, {0, 0, 1 - t, 1}, {0, 0, 0, 1 - t}}};

@@ -26,34 +26,34 @@ struct PlacedQuad {
   std::uint8_t turn = 0;
 };
 
-/// Quads in rows and columns that are to be one face.
+/// A rectangle of quads that becomes one face.
 struct FaceDraft {
   std::size_t width = 0, height = 0;
   std::vector<PlacedQuad> quads;
   [[nodiscard]] const PlacedQuad& at(std::size_t x, std::size_t y) const { return quads[x + width * y]; }
 };
 
-/// A face beside an edge: which side of it, and the parameters along that where the edge begins and ends.
+/// How an edge lies on a face: on which side, and from which parameter to which along it.
 struct JointUse {
   std::uint32_t face = 0;
   std::uint8_t side = 0;
   double begin = 0, end = 0;
   [[nodiscard]] double length() const { return end - begin; }
 };
-/// An edge of faces: one curve, along which the first face runs.
+/// An edge between two faces, or on the border of one, in the direction of the first face's loop.
 struct FaceJoint {
   std::array<std::uint32_t, 2> ends;  ///< names of vertices
   std::array<JointUse, 2> uses;
   std::size_t count = 0;  ///< of uses
   std::uint32_t quad = 0,
-                side = 0;  ///< where it is smooth, or not: a quad of the first face and its own side
+                side = 0;  ///< a quad of the first face on the edge, and which side of it
 };
 struct LoopSide {
   std::uint32_t face, joint;
   bool reversed;
 };
 
-/// Quads of a surface, how they lie side by side, and how far each is split.
+/// The quads of a surface: their neighbours, how often each is split, and the faces and edges that they make up.
 class BrepLayout {
  public:
   /// Errors:    InputError (refused), see to_brep().
@@ -63,23 +63,23 @@ class BrepLayout {
   [[nodiscard]] std::size_t name_count() const { return corner_depths_.size(); }
 
   [[nodiscard]] QuadDepths depths(std::uint32_t quad) const;
-  /// Splits more towards what a piece touches, at most so often.
+  /// Splits more often towards the corner or the sides that a piece touches.
   void deepen(std::uint32_t quad, const QuadPiece& piece, std::uint8_t levels, std::uint8_t most);
-  /// Sides that a tip touches alone are of decaying creases: they, and what joins them, are split alike, lest a piece ends amid
-  /// the side of a tip.
+  /// A tip that lies on a side but at no corner of the quad is beside a semi-sharp crease. Such sides, and those connected to them,
+  /// get one depth: no piece ends in the middle of the side of another's tip.
   void join_depths(std::uint32_t quad, const QuadPiece& piece);
   void level_depths();
-  /// Those of some quads whose depths have changed since the last call.
+  /// Which of some quads have other depths since the last call.
   [[nodiscard]] std::vector<std::uint32_t> take_changed(const std::vector<std::uint32_t>& among);
 
-  /// Rectangles as large as can be found soon of quads that are one polynomial, joined smoothly; all others alone.
+  /// Large rectangles of smoothly joined quads that are one polynomial each; every other quad by itself.
   [[nodiscard]] std::vector<FaceDraft> packed(
       const std::function<const TensorPiece*(std::uint32_t)>& polynomial) const;
-  /// The edges between faces, and on the border; and the sides of their loops, face by face.
+  /// All edges of faces; and the loops made of these, face by face.
   [[nodiscard]] std::vector<FaceJoint> joined(const std::vector<FaceDraft>& faces) const;
   [[nodiscard]] static std::vector<LoopSide> loops(const std::vector<FaceDraft>& faces,
                                                    const std::vector<FaceJoint>& joints);
-  /// Has the surface a tangent plane along an edge? In double precision.
+  /// Is the limit surface smooth across an edge? In double precision.
   [[nodiscard]] bool smooth(const FaceJoint& joint, double length) const;
 
  private:
@@ -116,7 +116,7 @@ class BrepLayout {
   std::vector<bool> halved_;  // edges
   std::vector<Segment> segments_;
   std::vector<std::uint8_t> corner_depths_, side_depths_;
-  DisjointSets creases_;                   // of corners, joined by sides of decaying creases
+  DisjointSets creases_;                   // of corners, joined by sides with semi-sharp creases
   std::vector<std::uint32_t> crease_end_;  // of sides: a corner, or none
   std::vector<bool> changed_corners_, changed_sides_;
 };

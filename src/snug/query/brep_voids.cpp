@@ -10,7 +10,7 @@
 namespace snug {
 namespace {
 
-// Beyond so many shells none is looked for in another: the time is that of all pairs.
+// More shells are not compared: the time grows with the number of pairs.
 constexpr std::size_t most_shells = 2000;
 
 struct Sampled {
@@ -105,7 +105,7 @@ void find_voids(Brep& brep) {
     }
     Brep::Shell& shell = brep.shells[closed[i]];
     const bool inward = samples[i].volume < 0;
-    // A hollow is turned the other way than the solid around it, as the mesh has them.
+    // A void is oriented against the solid around it in the mesh, whichever way that is.
     if (outer && !brep.shells[closed[*outer]].void_of && inward != (samples[*outer].volume < 0))
       shell.void_of = closed[*outer];
     if (inward == shell.void_of.has_value()) continue;

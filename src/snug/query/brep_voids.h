@@ -4,7 +4,7 @@
 
 namespace snug {
 
-/// Finds out which closed shells are hollows of others, and turns solids outward, in double precision.
+/// Finds which closed shells are voids, and orients solids outward, in double precision.
 void find_voids(Brep& brep);
 
 }  // namespace snug
