@@ -27,12 +27,12 @@ struct LatticeNet {
   double largest, error;  ///< as in ControlNet
 };
 
-/// A net that is polynomial with the points that its basis functions weight, in the memory of the net.
+/// The points that the basis functions of a polynomial net weight; ghosts are appended to the net.
 /// Requires:  net.kind->polynomial().
 [[nodiscard]] LatticeNet with_ghosts(ControlNet& net);
 
-/// A net after one step of subdivision: quarters that are regular, and nets of those that are not. Of quads quarter k is the
-/// one at corner k, all corners in their places; of triangles child k.
+/// A net after one step of subdivision: regular quarters, and the nets of others. Quarter k is the one at corner k of a quad, with
+/// corners counted as there, or child k of a triangle.
 class NetQuarters {
  public:
   /// Requires:  a patch that is not polynomial, and no polygon.

@@ -15,17 +15,18 @@ struct FacePart {
   ParameterBox box;
   TensorPiece piece;  ///< on [0, 1]^2 of the box, relative to the origin
   Point3 origin;
-  bool tip;  ///< joins with continuous first derivatives alone
+  bool tip;  ///< joins with continuous first derivatives only
   double
-      distance;  ///< of the surface from the polynomial at most, parameter by parameter; beside the polynomial's own error
+      distance;  ///< upper bound of that to the surface, parameter by parameter, beside the error of `piece`
 };
 
-/// The B-spline surface of parts that cover a rectangle from (0, 0) and join smoothly. Knots are where parts end.
-/// Requires:  parts of one degree; `natural`: of the scheme, which may be less.
+/// The B-spline surface that consists of these parts, with knots where they end.
+/// Requires:  parts that join smoothly and cover a rectangle from (0, 0), all of one degree; `natural` is that of the scheme, which
+///            may be less.
 [[nodiscard]] SplineSurface spline_of(std::span<const FacePart> parts, std::size_t natural);
-/// Upper bound of the distance of the surface that the parts stand for from a B-spline surface, parameter by parameter, rounding
-/// included.
-/// Requires:  the spline's parameters cover those of the parts, and its degree is theirs.
+/// Upper bound of the distance between a B-spline surface and the limit surface that the parts describe, parameter by parameter,
+/// rounding included.
+/// Requires:  the same degree; parameters of the parts are parameters of `spline`.
 [[nodiscard]] double distance_bound(std::span<const FacePart> parts, const SplineSurface& spline);
 
 /// The border of a surface from corner k of its parameters to the next one; parameters rise from 0.

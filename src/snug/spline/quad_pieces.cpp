@@ -19,9 +19,9 @@ struct PartNet {
 
 namespace {
 
-// Splits of a tip until the pieces at its corner are polynomials, or the corner is taken to be extraordinary.
+// How many splits of a tip are tried to find polynomials at a corner, before it counts as extraordinary.
 constexpr unsigned jet_splits = 8;
-// Of a tip whose distance is bounded, until what is left is small.
+// Limits of the splits that bound a tip's distance.
 constexpr unsigned bound_splits = 40, most_bound_pieces = 4096;
 
 constexpr std::array<std::array<std::size_t, 2>, 4> corner_places{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
@@ -55,7 +55,7 @@ std::optional<CornerJet> jet_at(ControlNet net, std::size_t corner, std::size_t 
   return {};
 }
 
-// The Bezier points of a tip, corner by corner, and by what it passes through where corners are extraordinary.
+// The Bezier points of a tip: from derivatives at regular corners, else from limit points that it passes through.
 class TipFit {
  public:
   /// Nets: of one row or column of parts that cover the tip.
@@ -96,7 +96,7 @@ class TipFit {
   }
   [[nodiscard]] Vector3 limit(double u, double v) { return evaluator_.frame(place(u, v)).point.relative; }
 
-  // Handles at extraordinary corners of a side: through one or two limit points, then onto the tangent planes.
+  // Bezier points next to extraordinary ends of a side: through one or two limit points, then into the tangent plane.
   void fit_side(std::size_t k) {
     const std::size_t l = (k + 1) % 4;
     if (known_[k] && known_[l]) return;
@@ -129,7 +129,7 @@ class TipFit {
     }
   }
 
-  // A point beside an extraordinary corner: such that the middle is the surface's; of more than one corner without a twist.
+  // Inner Bezier points: of one extraordinary corner such that the middle is the surface's, of several without a twist.
   void fit_inside() {
     const auto unknown = static_cast<std::size_t>(std::count(known_.begin(), known_.end(), false));
     for (std::size_t k = 0; k < 4; ++k) {
@@ -159,7 +159,7 @@ double hull_distance(const ControlNet& net, const TensorPiece& bezier) {
   return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
 }
 
-// At least as much as that; no nearer to it than `sufficient`.
+// An upper bound; not refined any more once it is at most `sufficient`.
 double tip_distance(std::span<const PartNet> nets, const TensorPiece& bezier, std::size_t degree,
                     double sufficient) {
   struct Part {
@@ -306,52 +306,66 @@ void QuadPieces::add_tip(ControlNet net, const QuadPiece& place) {
   ++tips_;
 }
 
-// Tips beside a decaying crease are fitted as long as one polynomial will do: all of a block of tips along a side, or its halves.
+namespace {
+
+// Rows of tips beside semi-sharp creases: one polynomial may do for several.
+class TipRows {
+ public:
+  enum class Row : std::uint8_t { none, along_u, along_v };
+
+  template <class Drafts>
+  explicit TipRows(const Drafts& tips) {
+    for (const auto& tip : tips) places_.insert({tip.piece.level, tip.piece.i, tip.piece.j});
+  }
+  // The side of the quad that a tip lies on, if it is one; at a corner the side on which the next tip is.
+  [[nodiscard]] Row row_of(const QuadPiece& p) const {
+    const bool inner = p.corners() == 0;
+    const bool u = (p.sides() & 5u) != 0 && (inner || has(p, p.i + 1, p.j) || has(p, p.i - 1, p.j));
+    const bool v = (p.sides() & 10u) != 0 && (inner || has(p, p.i, p.j + 1) || has(p, p.i, p.j - 1));
+    return u == v ? Row::none : u ? Row::along_u : Row::along_v;
+  }
+  // In the order of rows, and in rows.
+  [[nodiscard]] bool before(const QuadPiece& a, const QuadPiece& b) const { return key(a) < key(b); }
+  [[nodiscard]] bool adjoin(const QuadPiece& a, const QuadPiece& b) const {
+    const Row row = row_of(a);
+    if (row == Row::none || row_of(b) != row || a.level != b.level) return false;
+    return row == Row::along_u ? a.j == b.j && b.i == a.i + 1 : a.i == b.i && b.j == a.j + 1;
+  }
+
+ private:
+  [[nodiscard]] bool has(const QuadPiece& p, std::uint32_t i, std::uint32_t j) const {
+    return places_.contains({p.level, i, j});
+  }
+  [[nodiscard]] std::tuple<Row, unsigned, std::uint32_t, std::uint32_t> key(const QuadPiece& p) const {
+    const Row row = row_of(p);
+    return row == Row::along_u ? std::tuple(row, p.level, p.j, p.i) : std::tuple(row, p.level, p.i, p.j);
+  }
+  std::set<std::tuple<unsigned, std::uint32_t, std::uint32_t>> places_;
+};
+
+}  // namespace
+
+// Row by row, in the largest blocks whose lengths and places are multiples of the same power of two.
 void QuadPieces::fit_tips() {
   const auto first =
       std::partition(drafts_.begin(), drafts_.end(), [](const Draft& d) { return !d.piece.tip; });
   std::vector<Draft> tips(std::make_move_iterator(first), std::make_move_iterator(drafts_.end()));
   drafts_.erase(first, drafts_.end());
-  std::set<std::tuple<unsigned, std::uint32_t, std::uint32_t>> places;
-  for (const Draft& tip : tips) places.insert({tip.piece.level, tip.piece.i, tip.piece.j});
-  const auto has = [&](const QuadPiece& p, std::uint32_t i, std::uint32_t j) {
-    return places.contains({p.level, i, j});
-  };
-  // Along which side, if it is one; at a corner the side on which there are others.
-  const auto along = [&](const QuadPiece& p) {
-    const bool u =
-        (p.sides() & 5u) != 0 && (p.corners() == 0 || has(p, p.i + 1, p.j) || has(p, p.i - 1, p.j));
-    const bool v =
-        (p.sides() & 10u) != 0 && (p.corners() == 0 || has(p, p.i, p.j + 1) || has(p, p.i, p.j - 1));
-    return std::pair(u == v, u);
-  };
-  const auto key = [&](const QuadPiece& p) {
-    const auto [alone, u] = along(p);
-    return std::tuple(alone, u, p.level, u ? p.j : p.i, u ? p.i : p.j);
-  };
+  const TipRows rows(tips);
   std::sort(tips.begin(), tips.end(),
-            [&](const Draft& a, const Draft& b) { return key(a.piece) < key(b.piece); });
-  for (std::size_t begin = 0; begin < tips.size();) {
-    const QuadPiece& p = tips[begin].piece;
-    const std::pair side = along(p);
-    const bool u = side.second;
-    std::size_t run = 1;
-    const auto follows = [&](const QuadPiece& q) {
-      return along(q) == side && q.level == p.level &&
-             (u ? q.j == p.j && q.i == p.i + run : q.i == p.i && q.j == p.j + run);
-    };
-    while (!side.first && begin + run < tips.size() && follows(tips[begin + run].piece)) ++run;
-    for (std::size_t done = 0; done < run;) {
-      const std::size_t at = (u ? p.i : p.j) + done;
-      std::size_t count = 1;
-      while (at % (2 * count) == 0 && done + 2 * count <= run) count *= 2;
-      fit_block({tips.data() + begin + done, count}, u);
-      done += count;
+            [&](const Draft& a, const Draft& b) { return rows.before(a.piece, b.piece); });
+  for (std::size_t begin = 0, end = 0; begin < tips.size(); begin = end) {
+    for (end = begin + 1; end < tips.size() && rows.adjoin(tips[end - 1].piece, tips[end].piece);) ++end;
+    const bool along_u = rows.row_of(tips[begin].piece) == TipRows::Row::along_u;
+    for (std::size_t at = begin, count = 0; at < end; at += count) {
+      const std::size_t place = along_u ? tips[at].piece.i : tips[at].piece.j;
+      for (count = 1; place % (2 * count) == 0 && at + 2 * count <= end;) count *= 2;
+      fit_block({tips.data() + at, count}, along_u);
     }
-    begin += run;
   }
 }
 
+// One polynomial for a block if that is near enough, else one for each half.
 void QuadPieces::fit_block(std::span<Draft> tips, bool along_u) {
   const std::size_t count = tips.size();
   Draft block{tips[0].piece, {}};
@@ -374,7 +388,7 @@ void QuadPieces::fit_block(std::span<Draft> tips, bool along_u) {
   fit_block(tips.subspan(count / 2), along_u);
 }
 
-// Is the side of a tip on the quad's border the limit curve, up to rounding? Then all blocks make the same curve of it.
+// Is a tip the limit curve, up to rounding, where it lies on the quad's border? Then every choice of blocks gives this curve.
 bool QuadPieces::is_border_of(const QuadPiece& tip, bool along_u, std::size_t samples) {
   const ParameterBox box = tip.box();
   const double tolerance = 0x1p-40 * tip.piece.largest;

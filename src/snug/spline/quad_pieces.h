@@ -13,7 +13,7 @@
 
 namespace snug {
 
-/// How often a quad is split towards where it is no polynomial: towards its corners and towards its sides, side k from corner k.
+/// How often a quad is split where it is not polynomial: towards each corner, and towards each side, k being the one from corner k.
 struct QuadDepths {
   std::array<std::uint8_t, 4> corners{}, sides{};
 };
@@ -23,9 +23,9 @@ struct QuadPiece {
   unsigned level = 0;
   std::uint32_t i = 0, j = 0, columns = 1, rows = 1;
   TensorPiece piece;  ///< on [0, 1]^2
-  bool tip = false;   ///< the surface is no polynomial there, and this one is fitted to it
+  bool tip = false;   ///< fitted to a surface that is not polynomial there
   double distance =
-      0;  ///< upper bound of that of the surface, parameter by parameter, beside the error of `piece`
+      0;  ///< of the surface from it at most, parameter by parameter, beside the error of `piece`
 
   [[nodiscard]] ParameterBox box() const {
     const double s = 1 / static_cast<double>(std::uint64_t{1} << level);
@@ -36,24 +36,24 @@ struct QuadPiece {
   [[nodiscard]] unsigned sides() const;
 };
 
-/// A quad of a scheme with a tensor basis as polynomials. What is none after so many splits is a tip: fitted such that pieces
-/// join with continuous derivatives, with the limit point and the tangent plane of extraordinary corners, and on a side of the
-/// quad by what is on that side alone: quads beside each other agree there, up to rounding, if their depths do. Beside decaying
-/// creases pieces are merged along these.
+/// A quad as polynomials. Where the surface is not polynomial after the splits that the depths ask for, there is a tip: a
+/// bicubic with the limit point and the tangent plane of an extraordinary corner. Pieces join with continuous first derivatives.
+/// On a side of the quad a tip depends on what is on that side alone, so that quads beside each other agree there, up to
+/// rounding, if their depths do. Beside semi-sharp creases pieces are merged along the crease.
 ///
 /// Points are relative to the patch's origin.
 /// Source:    derivations/brep.md.
 class QuadPieces {
  public:
-  /// Requires:  half a quad, which stands for all of it; a tensor basis. Tips farther off than `error` are not merged.
+  /// `error`: rows of tips get one polynomial only if it is at most this far off.
+  /// Requires:  half a quad, which stands for all of it; a tensor basis.
   QuadPieces(const Patch& patch, const QuadDepths& depths, double error);
   QuadPieces(const QuadPieces&) = delete;
   QuadPieces& operator=(const QuadPieces&) = delete;
   ~QuadPieces();
 
+  /// Of one degree: 3 if there are tips, else the scheme's.
   [[nodiscard]] std::vector<QuadPiece> take() { return std::move(pieces_); }
-  /// Of all pieces: 3 if there are tips, else the scheme's.
-  [[nodiscard]] std::size_t degree() const { return tips_ > 0 ? TensorPiece::max_degree : degree_; }
 
  private:
   struct Draft;

@@ -9,9 +9,9 @@
 
 namespace snug {
 
-/// A tensor-product polynomial of the same degree, 1 to 3, in u and v: by (degree + 1)^2 control points, u innermost, of a
-/// B-spline with these 2 degree knots each way that matter to it. Of a uniform B-spline they are a lattice, with knots 0 and 1
-/// alone Bezier points.
+/// A tensor-product polynomial of degree 1 to 3 in u and v, as one span of a B-spline: (degree + 1)^2 control points, u innermost,
+/// and the 2 degree knots each way on which the span depends. With uniform knots the points are a lattice, with knots 0 and 1 only
+/// they are Bezier points.
 struct TensorPiece {
   static constexpr std::size_t max_degree = 3, max_count = (max_degree + 1) * (max_degree + 1);
 
@@ -36,13 +36,13 @@ struct ParameterBox {
 /// A regular piece on [0, 1]^2.
 /// Requires:  a tensor basis of this degree.
 [[nodiscard]] TensorPiece tensor_piece(const LatticeNet& net, std::size_t degree);
-/// The Bezier points 0 to degree each way as knots say.
+/// One with the knots of Bezier points, all of which are 0.
 [[nodiscard]] TensorPiece bezier_piece(std::size_t degree);
 
 /// Sets `largest` from the points.
 void take_largest(TensorPiece& piece);
 
-/// The polynomial's polar form: degree arguments each way, any.
+/// The polynomial's polar form at `degree` arguments each way.
 [[nodiscard]] Vector3 blossom(const TensorPiece& piece, std::span<const double> u, std::span<const double> v);
 /// The value at a parameter.
 [[nodiscard]] Vector3 value(const TensorPiece& piece, double u, double v);
@@ -53,14 +53,14 @@ struct CornerJet {
 [[nodiscard]] CornerJet corner_jet(const TensorPiece& bezier, std::size_t x, std::size_t y);
 
 /// The polynomial on a part of its parameters, by Bezier points.
-/// Guarantee: `error` covers this, too.
+/// Guarantee: `error` covers the rounding of this, too.
 /// Requires:  a part of the square between the middle knots; parameters and knots of few digits, whose differences are exact.
 [[nodiscard]] TensorPiece bezier_on(const TensorPiece& piece, const ParameterBox& box);
 /// The same polynomial with degree 3. Errors likewise.
 /// Requires:  Bezier points.
 [[nodiscard]] TensorPiece raised(const TensorPiece& bezier);
-/// Turned so that side k is where side 0 was: (u, v) of the result is at corner k, u along side k.
-/// Requires:  knots that are the same from both ends, as those of lattices and of Bezier points.
+/// Turned so that side k takes the place of side 0: the result has (0, 0) at corner k, and u along side k.
+/// Requires:  knots that are symmetric, as those of lattices and of Bezier points.
 [[nodiscard]] TensorPiece turned(const TensorPiece& piece, std::size_t k);
 
 /// Upper bound of |a(u, v) - b(u, v)| on [0, 1]^2, errors included.
