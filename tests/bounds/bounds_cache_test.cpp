@@ -12,6 +12,34 @@
 namespace snug::bounds_cache_test {
 namespace {
 
+TEST(bound_library, prepares_all_that_patches_of_a_kind_ask_for) {
+  std::size_t refined = 0;
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    oracle::TaggedMesh creased = oracle::meshes::quad_grid(5, 5);
+    if (scheme == Scheme::loop) creased = oracle::meshes::triangulated(creased);
+    for (std::uint32_t k = 0; k < 5; ++k) creased.creases.push_back({12 + k, 13 + k, k < 2 ? 3.5 : 10});
+    for (const ControlMesh& mesh :
+         {testing::control_mesh(oracle::meshes::bipyramid(7)), testing::control_mesh(creased, {})}) {
+      const LimitSurface surface(mesh, {scheme}, std::make_shared<BoundsCache>());
+      BoundsCache& library = surface.library();
+      for (std::size_t p = 0; p < surface.patch_count(); ++p)
+        prepare_bounding_points(library, surface.kind(PatchId(p)));
+      const std::size_t bytes = library.bytes(), kinds = library.kinds().size();
+      BoundingPoints points;
+      for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+        bounding_points(library, surface.patch(PatchId(p)), points);
+        for (std::size_t round = 0; round < max_tip_refinements; ++round) {
+          for (std::size_t tip = 0; tip < points.tips().size(); ++tip, ++refined)
+            points.refine_tip(library, tip);
+        }
+      }
+      EXPECT_EQ(library.bytes(), bytes);
+      EXPECT_EQ(library.kinds().size(), kinds);
+    }
+  }
+  EXPECT_GT(refined, 500u);
+}
+
 TEST(bound_library, hands_every_thread_the_same_rows_and_tables) {
   BoundsCache library;
   std::vector<const BoundingRows*> seen(400);

@@ -348,6 +348,28 @@ TEST(apply_rows, is_the_plain_loop_bit_by_bit) {
   }
 }
 
+TEST(combine_rows, is_the_plain_loop_bit_by_bit) {
+  Random random(48);
+  for (std::size_t width = 1; width < 35; ++width) {
+    const std::size_t rows = 1 + random() % 20, count = random() % 12;
+    std::vector<double> entries(rows * width), weights(count);
+    for (double& entry : entries) entry = uniform(random, -1, 1);
+    for (double& weight : weights) weight = uniform(random, -1, 1);
+    std::vector<std::uint32_t> places(rows), sources(count);
+    for (std::uint32_t& place : places) place = static_cast<std::uint32_t>(random() % rows);
+    for (std::uint32_t& source : sources) source = static_cast<std::uint32_t>(random() % rows);
+    constexpr double untouched = 7;
+    std::vector<double> out(width + 1, untouched);
+    kernels::combine_rows({entries.data(), width, places, sources, weights}, out.data());
+    for (std::size_t c = 0; c < width; ++c) {
+      double sum = 0;
+      for (std::size_t i = 0; i < count; ++i) sum += weights[i] * entries[places[sources[i]] * width + c];
+      ASSERT_EQ(out[c], sum) << width << ' ' << c;
+    }
+    ASSERT_EQ(out[width], untouched) << width;
+  }
+}
+
 TEST(heights, are_those_of_the_plain_loop) {
   Random random(47);
   for (std::size_t count = 1; count < 35; ++count) {

@@ -194,16 +194,33 @@ void bounding_points(const CurvePiece& piece, BoundingPoints& out) {
   }
 }
 
-// A patch of the kind asks for all that the others will.
-void prepare_bounding_points(BoundsCache& library, const Kind& kind) {
-  Patch patch;
-  patch.kind = &kind;
-  patch.points.resize(kind.control_count());
-  BoundingPoints points;
-  bounding_points(library, patch, points);
-  for (std::size_t round = 0; round < max_tip_refinements; ++round) {
-    for (std::size_t tip = 0; tip < points.tips().size(); ++tip) points.refine_tip(library, tip);
+namespace {
+
+// All that add_with_tips() and refine_tip() will ask for: a tip's kind stays from level to level.
+void prepare_tips(BoundsCache& library, const Kind& kind) {
+  for (const BoundingRows::Net& net : library.rows(kind).nets()) {
+    static_cast<void>(library.tip_table(*net.kind));
+    static_cast<void>(library.level_rows(*net.kind));
   }
+}
+
+// All that add_parts() will ask for.
+void prepare_parts(BoundsCache& library, const Kind& kind, unsigned level) {
+  if (kind.polynomial()) return;
+  if (kind.cacheable()) {
+    if (library.rows(kind).self_similar()) prepare_tips(library, kind);
+    return;
+  }
+  if (level > 0 && library.direct_rows(kind)) return;
+  if (level >= (kind.transient() ? transient_split_levels : high_valence_split_levels)) return;
+  for (const KindChild& child : kind.children()) prepare_parts(library, *child.kind, level + 1);
+}
+
+}  // namespace
+
+void prepare_bounding_points(BoundsCache& library, const Kind& kind) {
+  prepare_parts(library, kind, 0);
+  if (kind.polynomial()) static_cast<void>(library.rows(kind));
 }
 
 Slab outer_slab(const BoundingPoints& points, const Vector3& normal) {

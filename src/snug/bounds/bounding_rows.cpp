@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include <snug/bounds/fit_kernels.h>
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
 
@@ -57,13 +58,12 @@ void append_product(const Stencils& stencils, std::size_t r, const Net& of, Dens
   const DenseRows& net = of.rows;
   const std::size_t begin = out.entries.size();
   out.entries.resize(begin + net.width);
-  double* const __restrict target = out.entries.data() + begin;
+  double* const target = out.entries.data() + begin;
+  kernels::combine_rows({net.entries.data(), net.width, of.control, row.sources, row.weights}, target);
   double error = 0, largest = 0, magnitude = 0;
   for (std::size_t i = 0; i < row.sources.size(); ++i) {
     const std::size_t k = of.control[row.sources[i]];
     const double weight = row.weights[i];
-    const double* const source = net.entries.data() + k * net.width;
-    for (std::size_t c = 0; c < net.width; ++c) target[c] += weight * source[c];
     error += std::fabs(weight) * net.errors[k];
     magnitude += std::fabs(weight) * net.abs_sums[k];
     largest = std::max(largest, net.abs_sums[k] + net.errors[k]);

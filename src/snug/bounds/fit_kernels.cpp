@@ -80,6 +80,40 @@ HWY_INLINE void apply_rows_with(D d, const double* weights, std::size_t rows, st
   if (r < rows) apply_block<1>(d, weights, rows, points, rows - lanes, x, y, z);
 }
 
+template <std::size_t blocks, class D>
+HWY_INLINE void combine_block(D d, const RowSum& sum, std::size_t c, double* out) {
+  using V = hn::Vec<D>;
+  const std::size_t lanes = hn::Lanes(d);
+  V total[blocks];
+  unrolled<blocks>([&](auto b) HWY_ATTR { total[b] = hn::Zero(d); });
+  for (std::size_t i = 0; i < sum.weights.size(); ++i) {
+    const V w = hn::Set(d, sum.weights[i]);
+    const double* const row = sum.entries + sum.places[sum.sources[i]] * sum.width + c;
+    unrolled<blocks>(
+        [&](auto b) HWY_ATTR { total[b] = hn::Add(total[b], hn::Mul(w, hn::LoadU(d, row + b * lanes))); });
+  }
+  unrolled<blocks>([&](auto b) HWY_ATTR { hn::StoreU(total[b], d, out + c + b * lanes); });
+}
+
+template <class D>
+HWY_INLINE void combine_with(D d, const RowSum& sum, double* out) {
+  constexpr std::size_t blocks = 3;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t c = 0;
+  for (; c + blocks * lanes <= sum.width; c += blocks * lanes) combine_block<blocks>(d, sum, c, out);
+  for (; c + lanes <= sum.width; c += lanes) combine_block<1>(d, sum, c, out);
+  if (c < sum.width) combine_block<1>(d, sum, sum.width - lanes, out);
+}
+
+void CombineRows(const RowSum& sum, double* out) {
+  const hn::ScalableTag<double> wide;
+  if (sum.width >= hn::Lanes(wide)) {
+    combine_with(wide, sum, out);
+  } else {
+    combine_with(hn::CappedTag<double, 1>(), sum, out);
+  }
+}
+
 void ApplyRows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x, double* y,
                double* z) {
   const hn::ScalableTag<double> wide;
@@ -606,6 +640,7 @@ HWY_AFTER_NAMESPACE();
 namespace snug::kernels {
 
 HWY_EXPORT(ApplyRows);
+HWY_EXPORT(CombineRows);
 HWY_EXPORT(Heights);
 HWY_EXPORT(Farthest);
 HWY_EXPORT(FitRegular);
@@ -618,6 +653,8 @@ void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3
                 double* y, double* z) {
   HWY_DYNAMIC_DISPATCH(ApplyRows)(weights, rows, points, x, y, z);
 }
+
+void combine_rows(const RowSum& sum, double* out) { HWY_DYNAMIC_DISPATCH(CombineRows)(sum, out); }
 
 Range heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
   return HWY_DYNAMIC_DISPATCH(Heights)(points, from, normal);

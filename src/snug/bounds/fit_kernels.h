@@ -48,6 +48,16 @@ struct Coordinates {
 void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
                 double* y, double* z);
 
+/// The sum of weights[i] times row places[sources[i]] of a row-major matrix.
+struct RowSum {
+  const double* entries;
+  std::size_t width;
+  std::span<const std::uint32_t> places, sources;
+  std::span<const double> weights;
+};
+/// That row; each sum runs over the sources in order.
+void combine_rows(const RowSum& sum, double* out);
+
 /// Least and largest dot(normal, p - from). NaN where a point is not finite is passed over.
 struct Range {
   double lower, upper;

@@ -87,23 +87,55 @@ Slopes best_through(const LinePoint& tight, const std::vector<LinePoint>& points
   return slopes;
 }
 
+// At the centre and its slopes: of the plane above `points`, which are in random order.
+struct CentredPlane {
+  double at_centre;
+  Slopes slopes;
+};
+CentredPlane lowest_above(const std::vector<LinePoint>& points) {
+  CentredPlane plane{-INFINITY, {0, 0}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LinePoint& p = points[i];
+    if (p.z <= plane.at_centre + plane.slopes.x * p.x + plane.slopes.y * p.y + negligible) continue;
+    plane.slopes = best_through(p, points, i);
+    plane.at_centre = p.z - plane.slopes.x * p.x - plane.slopes.y * p.y;
+  }
+  return plane;
+}
+
 }  // namespace
 
 Plane lowest_plane_above(std::span<const double> x, std::span<const double> y, std::span<const double> z,
                          double centre_x, double centre_y) {
   SNUG_EXPECT(!x.empty() && x.size() == y.size() && x.size() == z.size());
-  std::vector<LinePoint> points(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i] - centre_x, y[i] - centre_y, z[i]};
-  shuffle(points);
-  Slopes slopes{0, 0};
-  double at_centre = -INFINITY;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const LinePoint& p = points[i];
-    if (p.z <= at_centre + slopes.x * p.x + slopes.y * p.y + negligible) continue;
-    slopes = best_through(p, points, i);
-    at_centre = p.z - slopes.x * p.x - slopes.y * p.y;
+  // Few points touch the plane: it is made for some, and the one farthest above it joins them.
+  std::vector<std::size_t> some;
+  std::vector<LinePoint> points;
+  const auto join = [&](std::size_t i) {
+    if (std::find(some.begin(), some.end(), i) != some.end()) return false;
+    some.push_back(i);
+    points.push_back({x[i] - centre_x, y[i] - centre_y, z[i]});
+    return true;
+  };
+  for (const std::span<const double>& axis : {x, y}) {
+    const auto [least, most] = std::minmax_element(axis.begin(), axis.end());
+    join(static_cast<std::size_t>(least - axis.begin()));
+    join(static_cast<std::size_t>(most - axis.begin()));
   }
-  return {at_centre, slopes.x, slopes.y, centre_x, centre_y};
+  while (true) {
+    std::vector<LinePoint> shuffled = points;
+    shuffle(shuffled);
+    const CentredPlane plane = lowest_above(shuffled);
+    std::size_t farthest = 0;
+    double most = -INFINITY;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double above =
+          z[i] - (plane.at_centre + plane.slopes.x * (x[i] - centre_x) + plane.slopes.y * (y[i] - centre_y));
+      if (above > most) most = above, farthest = i;
+    }
+    if (most <= negligible || !join(farthest))
+      return {plane.at_centre, plane.slopes.x, plane.slopes.y, centre_x, centre_y};
+  }
 }
 
 }  // namespace snug

@@ -20,9 +20,10 @@ struct Plane {
 ///            up by the largest violation. Always a finite plane, whatever duplicates, points on a line and
 ///            ties there are; slopes are at most 2^12 in size. The same input gives the same plane.
 /// Requires:  spans of equal size, at least 1; finite numbers, of about 1.
-/// Cost:      linear in the number of points, expected.
-/// Source:    [Seidel91]; differs: one fixed pseudo-random order, slopes held in a box instead of a check for
-///            unboundedness, and constraints without a direction are passed over.
+/// Cost:      a pass over the points for each that joins: some ten.
+/// Source:    [Seidel91] for some of the points, which the one farthest above joins until there is none; differs: one fixed
+///            pseudo-random order, slopes held in a box instead of a check for unboundedness, and constraints without a
+///            direction are passed over.
 [[nodiscard]] Plane lowest_plane_above(std::span<const double> x, std::span<const double> y,
                                        std::span<const double> z, double centre_x, double centre_y);
 

@@ -166,18 +166,20 @@ void QuadraticRows::make_fit(const BoundingRows& deep) {
       if (deep.quadratic(k)[r] == 1) weight_of[r] = corner_weight;
     }
   }
+  // Six sums at a time, which do not wait for each other.
+  std::vector<std::array<double, 6>> weighted(count);
   std::array<std::array<double, 6>, 6> gram{};
-  for (std::size_t k = 0; k < 6; ++k) {
-    for (std::size_t l = 0; l < 6; ++l) {
-      for (std::size_t r = 0; r < count; ++r)
-        gram[k][l] += weight_of[r] * deep.quadratic(k)[r] * deep.quadratic(l)[r];
+  for (std::size_t r = 0; r < count; ++r) {
+    for (std::size_t k = 0; k < 6; ++k) weighted[r][k] = weight_of[r] * deep.quadratic(k)[r];
+    for (std::size_t k = 0; k < 6; ++k) {
+      for (std::size_t l = 0; l < 6; ++l) gram[k][l] += weighted[r][k] * deep.quadratic(l)[r];
     }
   }
   for (std::size_t c = 0; c < deep.control_count(); ++c) {
+    const double* const weights = deep.column(c);
     std::array<double, 6> column{};
-    for (std::size_t k = 0; k < 6; ++k) {
-      for (std::size_t r = 0; r < count; ++r)
-        column[k] += weight_of[r] * deep.quadratic(k)[r] * deep.weight(r, c);
+    for (std::size_t r = 0; r < count; ++r) {
+      for (std::size_t k = 0; k < 6; ++k) column[k] += weighted[r][k] * weights[r];
     }
     solve(gram, column);
     fit_.insert(fit_.end(), column.begin(), column.end());
