@@ -305,12 +305,13 @@ TriangleMesh osd_uniform(const ControlMesh& mesh, int level, bool snapped) {
   result.points.reserve(values.size());
   for (const Primvar& value : values) result.points.push_back(value.value);
   const Far::TopologyLevel& last = refiner->GetLevel(level);
-  result.triangles.resize(static_cast<std::size_t>(last.GetNumFaces()));
+  result.triangles.reserve(2 * static_cast<std::size_t>(last.GetNumFaces()));
   for (int f = 0; f < last.GetNumFaces(); ++f) {
     const auto vertices = last.GetFaceVertices(f);
-    for (int k = 0; k < 3; ++k) {
-      result.triangles[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)] =
-          static_cast<std::uint32_t>(vertices[k]);
+    for (int k = 2; k < vertices.size(); ++k) {
+      result.triangles.push_back({static_cast<std::uint32_t>(vertices[0]),
+                                  static_cast<std::uint32_t>(vertices[k - 1]),
+                                  static_cast<std::uint32_t>(vertices[k])});
     }
   }
   return result;
