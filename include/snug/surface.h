@@ -29,8 +29,8 @@ struct SurfaceOptions {
   std::optional<Scheme> scheme{};
   std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
   BoundMethod bounds = BoundMethod::rows;  ///< how pieces are bounded
-  /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off
-  /// for surfaces that are queried thousands of times. Otherwise the BVH is built only from control points.
+  /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off for
+  /// surfaces of a few thousand faces after some ten thousand queries. Otherwise the BVH is built only from control points.
   bool tight = false;
   /// Receives one line where triangles are smoothed although neither `scheme` nor a tag says so, with the result of
   /// limit_to_faces() up to 200,000 faces.
