@@ -116,10 +116,16 @@ PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, in
   });
   Made all;
   if (counted.too_many()) return all;
-  for (const Made& part : parts) {
+  std::size_t sum = 0;
+  for (const Made& part : parts) sum += part.names.size();
+  all.quadratics.reserve(sum);
+  all.names.reserve(sum);
+  all.origins.reserve(sum);
+  for (Made& part : parts) {
     all.quadratics.insert(all.quadratics.end(), part.quadratics.begin(), part.quadratics.end());
     all.names.insert(all.names.end(), part.names.begin(), part.names.end());
     all.origins.insert(all.origins.end(), part.origins.begin(), part.origins.end());
+    part = {};
   }
   return all;
 }
