@@ -12,6 +12,8 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 add_library(snug_flags INTERFACE)
 # No contraction, no fast-math: every error term counts roundings one by one.
 target_compile_options(snug_flags INTERFACE -ffp-contract=off -fno-fast-math)
+# Where no build type is set, as in many a project that has snug as a sub-directory, compilers would not optimize.
+target_compile_options(snug_flags INTERFACE $<$<CONFIG:>:-O2>)
 add_library(snug_warnings INTERFACE)
 target_compile_options(snug_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                        -Wold-style-cast -Wnon-virtual-dtor)
