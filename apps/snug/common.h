@@ -140,6 +140,7 @@ class Report {
 [[nodiscard]] Command hull_command();
 [[nodiscard]] Command envelope_command();
 [[nodiscard]] Command collide_command();
+[[nodiscard]] Command clearance_command();
 [[nodiscard]] Command contact_command();
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command measure_command();

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include <snug/time_of_contact.h>
+#include <snug/clearance.h>
 #include <support/error.h>
 
 #include <fmt/core.h>
@@ -26,7 +26,9 @@ struct MoveOptions {
 
 struct Options : PairOptions {
   MoveOptions move_a, move_b;
-  std::string tolerance = "0.1%";
+  std::string tolerance = "0.1%", margin;
+  std::string absolute;  // of clearance
+  double relative = 0;
   bool solid = false;
   bool exit_code = false;
 };
@@ -137,30 +139,32 @@ std::vector<Point3> deformed(const std::string& path, const std::string& from, c
   return std::move(end.points);
 }
 
-std::string sentence(const TimeOfContact& answer, double tolerance, bool solid) {
+std::string sentence(const TimeOfContact& answer, const TimeOfContactOptions& wanted) {
   const std::string lower = text_at_most(answer.time.lower), upper = text_at_most(answer.time.upper, true);
+  const bool solid = wanted.solid;
+  const std::string contact =
+      wanted.margin == 0 ? "contact" : fmt::format("distance of {:.6g}", wanted.margin);
   switch (answer.verdict) {
     case Verdict::separated:
-      return fmt::format("separated: proved, no contact up to time {}", lower);
+      return fmt::format("separated: proved, no {} up to time {}", contact, lower);
     case Verdict::within:
-      return fmt::format("within: no contact before time {}, and at time {} at most {:.6g} apart", lower,
-                         upper, tolerance);
+      return fmt::format("within: no {} before time {}, and at time {} at most {:.6g} apart", contact, lower,
+                         upper, wanted.margin + *wanted.tolerance);
     case Verdict::intersecting:
-      return answer.contained
-                 ? "intersecting: proved, at time 0 " + inner_sentence(*answer.contained)
-                 : fmt::format("intersecting: proved, first contact at a time from {} to {}", lower, upper);
+      if (answer.contained) return "intersecting: proved, at time 0 " + inner_sentence(*answer.contained);
+      return fmt::format("intersecting: proved, first {} at a time from {} to {}", contact, lower, upper);
     case Verdict::undecided:
       break;
   }
   if (answer.outcome == Outcome::budget_spent) {
-    return fmt::format("undecided: no contact before time {}, unknown after that; give a larger --max-splits",
-                       lower);
+    return fmt::format("undecided: no {} before time {}, unknown after that; give a larger --max-splits",
+                       contact, lower);
   }
   if (solid && answer.time.lower == 0) {
     return "undecided: no proof at time 0 whether one solid is inside the other; move one of them slightly";
   }
-  return fmt::format(
-      "undecided: no contact before time {}, then too close to decide; give a larger --tolerance", lower);
+  return fmt::format("undecided: no {} before time {}, then too close to decide; give a larger --tolerance",
+                     contact, lower);
 }
 
 // The surface with its control points at a time.
@@ -190,42 +194,64 @@ ExitStatus status_of(Verdict verdict) {
   return ExitStatus::undecided;
 }
 
+// Two meshes and their motions, read and made ready.
+class MovingArguments {
+ public:
+  MovingArguments(const Options& options, const WorkMonitor& monitor) : pair(options) {
+    const Mending mending{options.nearest_rigid, notes_for(options)};
+    const Trajectory motion_a = motion_of(options.move_a, "-a", pair.a().pose(), mending),
+                     motion_b = motion_of(options.move_b, "-b", pair.b().pose(), mending);
+    const std::string &deform_a = options.move_a.deform, &deform_b = options.move_b.deform;
+    duration_ = std::max(
+        {motion_a.duration(), motion_b.duration(), deform_a.empty() && deform_b.empty() ? 0.0 : 1.0});
+    if (duration_ == 0) {
+      throw UsageError(
+          "nothing moves; give --to-b, --velocity-b, --spin-b, --path-b or --deform-b, or the same for A");
+    }
+    pair.prepare(monitor);
+    end_a_ = deformed(deform_a, options.mesh_a, pair.a().surface().mesh(), options);
+    end_b_ = deformed(deform_b, options.mesh_b, pair.b().surface().mesh(), options);
+    if (options.solid) pair.require_closed();
+    a.emplace(DeformingSurface{pair.a().surface(), end_a_, motion_a});
+    b.emplace(DeformingSurface{pair.b().surface(), end_b_, motion_b});
+  }
+
+  PairArguments pair;
+  std::optional<DeformingSurface> a, b;
+
+  // The surfaces at a time; their poses are written.
+  [[nodiscard]] Sides at(double time, Report& report) const {
+    const PosePair at{a->motion.at(time), b->motion.at(time)};
+    if (report.json()) {
+      report.write().field("duration", duration_);
+      write_poses(report.write(), at);
+    }
+    return {surface_at(*a, time).at(at.a), surface_at(*b, time).at(at.b)};
+  }
+
+ private:
+  std::vector<Point3> end_a_, end_b_;
+  double duration_ = 0;
+};
+
 ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
-  PairArguments pair(options);
-  const Mending mending{options.nearest_rigid, notes_for(options)};
-  const Trajectory motion_a = motion_of(options.move_a, "-a", pair.a().pose(), mending),
-                   motion_b = motion_of(options.move_b, "-b", pair.b().pose(), mending);
-  const std::string &deform_a = options.move_a.deform, &deform_b = options.move_b.deform;
-  if (motion_a.duration() == 0 && motion_b.duration() == 0 && deform_a.empty() && deform_b.empty()) {
-    throw UsageError(
-        "nothing moves; give --to-b, --velocity-b, --spin-b, --path-b or --deform-b, or the same for A");
-  }
-  TimeOfContactOptions wanted;
-  wanted.tolerance = tolerance.in_mesh_units(pair.size());
-  wanted.solid = options.solid;
   ProgressBar bar("moving", options.quiet);
   const WorkMonitor monitor = bar.monitor();
-  pair.prepare(monitor);
-  const std::vector<Point3> end_a = deformed(deform_a, options.mesh_a, pair.a().surface().mesh(), options),
-                            end_b = deformed(deform_b, options.mesh_b, pair.b().surface().mesh(), options);
-  if (options.solid) pair.require_closed();
+  const MovingArguments moving(options, monitor);
+  TimeOfContactOptions wanted;
+  wanted.tolerance = tolerance.in_mesh_units(moving.pair.size());
+  if (!options.margin.empty())
+    wanted.margin = parse_length(options.margin, "--margin", true).in_mesh_units(moving.pair.size());
+  wanted.solid = options.solid;
   Report report("time-of-contact", options);
-  pair.write_heads(report);
-  const DeformingSurface a{pair.a().surface(), end_a, motion_a}, b{pair.b().surface(), end_b, motion_b};
-  const TimeOfContact answer = time_of_contact(a, b, wanted, run_of(options, monitor));
+  moving.pair.write_heads(report);
+  const TimeOfContact answer = time_of_contact(*moving.a, *moving.b, wanted, run_of(options, monitor));
+  if (report.json()) report.write().field("tolerance", *wanted.tolerance).field("margin", wanted.margin);
   // Where the witnesses are: at contact, or at the beginning.
-  const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
-  const PosePair at{motion_a.at(time), motion_b.at(time)};
-  const Sides sides{surface_at(a, time).at(at.a), surface_at(b, time).at(at.b)};
-  if (report.json()) {
-    report.write().field("tolerance", *wanted.tolerance);
-    const double last = end_a.empty() && end_b.empty() ? 0 : 1;
-    report.write().field("duration", std::max({motion_a.duration(), motion_b.duration(), last}));
-    write_poses(report.write(), at);
-    write_fields(report.write(), answer, sides);
-  }
-  report.text(sentence(answer, *wanted.tolerance, options.solid));
+  const Sides sides = moving.at(answer.time.upper < INFINITY ? answer.time.upper : 0, report);
+  if (report.json()) write_fields(report.write(), answer, sides);
+  report.text(sentence(answer, wanted));
   if (answer.witness) {
     for (const std::string& line : witness_lines(sides, *answer.witness)) report.text(line);
   }
@@ -233,20 +259,66 @@ ExitStatus run(const Options& options) {
   return options.exit_code ? status_of(answer.verdict) : status;
 }
 
+ExitStatus run_clearance(const Options& options) {
+  ProgressBar bar("moving", options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  const MovingArguments moving(options, monitor);
+  ClearanceOptions wanted;
+  if (!options.absolute.empty() || options.relative > 0) {
+    wanted.absolute =
+        options.absolute.empty()
+            ? 0
+            : parse_length(options.absolute, "--absolute", true).in_mesh_units(moving.pair.size());
+    wanted.relative = options.relative;
+  } else {
+    wanted.absolute = 1e-3 * moving.pair.size();
+    wanted.relative = 0.1;
+  }
+  wanted.solid = options.solid;
+  Report report("clearance", options);
+  moving.pair.write_heads(report);
+  const Clearance answer = clearance(*moving.a, *moving.b, wanted, run_of(options, monitor));
+  if (report.json()) report.write().field("absolute", *wanted.absolute).field("relative", *wanted.relative);
+  const Sides sides = moving.at(answer.time, report);
+  if (report.json()) write_fields(report.write(), answer, sides);
+  report.text(answer.distance.upper == 0
+                  ? fmt::format("proved: at time {:.6g} they have a point in common", answer.time)
+                  : fmt::format("at all times they are at least {} apart, at time {:.6g} at most {}",
+                                text_at_most(answer.distance.lower), answer.time,
+                                text_at_most(answer.distance.upper, true)));
+  for (const std::string& line : witness_lines(sides, answer.witness)) report.text(line);
+  for (const ClearanceSpan& span : answer.spans) {
+    report.text(fmt::format("  from {:.6g} to {:.6g}: at least {}", span.time.lower, span.time.upper,
+                            text_at_most(span.distance.lower)));
+  }
+  return report.finish(answer.outcome == Outcome::complete);
+}
+
 }  // namespace
 
-Command contact_command() {
+namespace {
+
+std::shared_ptr<Options> moving_options(OptionList& list) {
   auto options = std::make_shared<Options>();
   options->moves = true;
   options->max_splits = default_splits::time_of_contact;
-  OptionList list;
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);
+  list.add(Group::own, "--solid", &options->solid,
+           "Compare solids bounded by closed surfaces: one inside the other is in contact");
+  return options;
+}
+
+}  // namespace
+
+Command contact_command() {
+  OptionList list;
+  const std::shared_ptr<Options> options = moving_options(list);
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Surfaces this close may be reported as within; the time is narrowed until no point moves farther "
            "than this within its interval; mesh units, or percent of the larger mesh");
-  list.add(Group::own, "--solid", &options->solid,
-           "Compare solids bounded by closed surfaces: one inside the other is in contact");
+  list.add(Group::own, "--margin LENGTH", &options->margin,
+           "Contact is being at most so far apart; mesh units, or percent of the larger mesh");
   list.add(Group::own, "--exit-code", &options->exit_code,
            "Exit with 0 if separated, 10 within, 11 intersecting, 12 undecided");
   add_pair_options(list, *options, false);
@@ -259,6 +331,25 @@ Command contact_command() {
       std::move(list),
       [options] { return run(*options); },
       "contact"};
+}
+
+Command clearance_command() {
+  OptionList list;
+  const std::shared_ptr<Options> options = moving_options(list);
+  list.add(Group::own, "--absolute LENGTH", &options->absolute,
+           "Largest width of the interval of each span; mesh units, or percent of the larger mesh; default "
+           "0.1%, or "
+           "10 percent of the distance if that is more");
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of its upper end")
+      .between(0, 1);
+  add_pair_options(list, *options, false);
+  return {"clearance",
+          Topic::two_surfaces,
+          "How far apart do two moving limit surfaces stay? Bounds for every time, not for samples alone",
+          {"snug clearance pawn.obj bust.obj --move-b \"9 0 -9\" --velocity-b \"0 0 18\"",
+           "snug clearance gripper.obj part.obj --path-a path.txt --absolute 0.1 --json"},
+          std::move(list),
+          [options] { return run_clearance(*options); }};
 }
 
 }  // namespace snug::command

@@ -10,6 +10,7 @@
 
 #include <snug/bound.h>
 #include <snug/brep.h>
+#include <snug/clearance.h>
 #include <snug/collide.h>
 #include <snug/contacts.h>
 #include <snug/distance.h>
@@ -168,6 +169,25 @@ inline constexpr auto fields_of<TimeOfContact> = std::tuple{
     Field{"contained", &TimeOfContact::contained, fields::contained},
     Field{"steps", &TimeOfContact::steps, "Number of times that were looked at."},
     Field{"stats", &TimeOfContact::stats, fields::work},
+};
+
+template <>
+inline constexpr auto fields_of<ClearanceSpan> = std::tuple{
+    Field{"time", &ClearanceSpan::time, "From its beginning to its end."},
+    Field{"distance", &ClearanceSpan::distance, "Contains the least distance at all times in it."},
+};
+
+template <>
+inline constexpr auto fields_of<Clearance> = std::tuple{
+    Field{"outcome", &Clearance::outcome, fields::outcome},
+    Field{"distance", &Clearance::distance,
+          "Contains the least distance of the whole motion, in mesh units."},
+    Field{"time", &Clearance::time, "A time at which they are at most the upper end of `distance` apart."},
+    Field{"witness", &Clearance::witness, "The two closest points found at that time, on A and on B."},
+    Field{"contained", &Clearance::contained, fields::contained},
+    Field{"spans", &Clearance::spans, "From time 0 to the end, each from where the one before it ends."},
+    Field{"steps", &Clearance::steps, "Number of times that were looked at."},
+    Field{"stats", &Clearance::stats, fields::work},
 };
 
 // Contacts.

@@ -5,6 +5,7 @@
 
 #include <snug/bound.h>
 #include <snug/brep.h>
+#include <snug/clearance.h>
 #include <snug/collide.h>
 #include <snug/contacts.h>
 #include <snug/curves.h>

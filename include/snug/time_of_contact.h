@@ -79,12 +79,15 @@ struct TimeOfContactOptions {
   std::optional<double> tolerance{};
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other is in contact
   bool prove_contact = true;  ///< before returning `within`, try to prove `intersecting`
+  /// >= 0, mesh units. With a margin contact is being at most so far apart: `separated` surfaces are always farther apart,
+  /// `within` means at most margin + tolerance, and the time interval is that of coming so near.
+  double margin = 0;
 };
 
 /// The first contact of two moving surfaces.
 struct TimeOfContact {
   /// separated: they never meet. within: at time.upper they are at most the tolerance apart. intersecting:
-  /// they have a common point at some time in `time`. undecided: none of these could be shown.
+  /// they have a common point at some time in `time`, with a margin at time.upper. undecided: none of these could be shown.
   Verdict verdict = Verdict::undecided;
   /// The surfaces have no common point at any time before the lower end. The upper end is infinite if they were
   /// not found to come near each other, as for `separated`, whose lower end is the end of the motion.
@@ -106,7 +109,7 @@ struct TimeOfContact {
 /// Budget:    1,000,000 in each unit of time: a split of a patch and a pair of nodes followed through an interval count
 ///            1, a time evaluated 1000; no single time takes more than a sixteenth. 256 bytes each.
 /// Requires:  motions of the same duration, or one surface that stays.
-/// Errors:    InputError: (value) for a tolerance that is negative or not finite, and for durations that
+/// Errors:    InputError: (value) for a tolerance or margin that is negative or not finite, and for durations that
 ///            differ; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has
 ///            a limit surface, and with `solid` if a surface is not closed. Interrupted.
 /// Cost:      some dozen distance queries (bench/results/contact_time.txt); where parts slide or turn close to each

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, List
 
 from ._errors import FileError, MeshError, MeshWarning, PoseError, UndecidedError
 from ._snug import (
+    Clearance,
+    ClearanceSpans,
     ClosestPoint,
     Collision,
     ContactArea,
@@ -42,6 +44,7 @@ from ._snug import (
     TimeOfContact,
     Trajectory,
     __version__,
+    clearance,
     collide,
     contacts,
     deviation,
@@ -53,6 +56,8 @@ from ._snug import (
 )
 
 __all__ = [
+    "Clearance",
+    "ClearanceSpans",
     "ClosestPoint",
     "Collision",
     "CollisionManager",
@@ -88,6 +93,7 @@ __all__ = [
     "Trajectory",
     "UndecidedError",
     "__version__",
+    "clearance",
     "collide",
     "collision",
     "contacts",

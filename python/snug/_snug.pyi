@@ -425,6 +425,34 @@ class TimeOfContact(_Truth, _Interval, _Witness):
     def __len__(self) -> int: ...
     def __getitem__(self, i: Union[int, slice]) -> TimeOfContact: ...
 
+class ClearanceSpans(_Interval):
+    @property
+    def time(self) -> Floats: ...
+    @property
+    def distance(self) -> Floats: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, i: Union[int, slice]) -> ClearanceSpans: ...
+
+class Clearance(_Interval, _Witness):
+    @property
+    def outcome(self) -> Words: ...
+    @property
+    def distance(self) -> Floats: ...
+    @property
+    def time(self) -> Number: ...
+    @property
+    def witness(self) -> Floats: ...
+    @property
+    def contained(self) -> Union[int, Places]: ...
+    @property
+    def spans(self) -> Union[ClearanceSpans, List[ClearanceSpans]]: ...
+    @property
+    def steps(self) -> Union[int, npt.NDArray[np.int32]]: ...
+    @property
+    def stats(self) -> Union[Dict[str, int], List[Dict[str, int]]]: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, i: Union[int, slice]) -> Clearance: ...
+
 class ContactRegions(_Interval, _Witness):
     @property
     def verdict(self) -> Words: ...
@@ -726,6 +754,7 @@ def time_of_contact(
     motion_b: Union[Trajectory, Pose],
     *,
     tolerance: Length = "0.1%",
+    margin: Length = 0,
     solid: bool = False,
     prove_contact: bool = True,
     max_splits: Optional[int] = None,
@@ -733,6 +762,20 @@ def time_of_contact(
     progress: Progress = None,
     rigid: Optional[str] = None,
 ) -> TimeOfContact: ...
+def clearance(
+    a: Surface,
+    motion_a: Union[Trajectory, Pose],
+    b: Surface,
+    motion_b: Union[Trajectory, Pose],
+    *,
+    absolute: Length = None,
+    relative: Optional[float] = None,
+    solid: bool = False,
+    max_splits: Optional[int] = None,
+    threads: int = 0,
+    progress: Progress = None,
+    rigid: Optional[str] = None,
+) -> Clearance: ...
 def penetration(
     a: Surface,
     b: Surface,

@@ -18,7 +18,7 @@ namespace snug::python {
 /// Whose answers are Answers, and which have a class of their own; others with fields are dicts.
 template <class V>
 inline constexpr bool is_answer = std::is_same_v<V, ContactRegion> || std::is_same_v<V, SelfContactPair> ||
-                                  std::is_same_v<V, OneSidedDistance>;
+                                  std::is_same_v<V, OneSidedDistance> || std::is_same_v<V, ClearanceSpan>;
 template <class V>
 inline constexpr bool is_class =
     std::is_same_v<V, IntersectionCurve> || std::is_same_v<V, ContactArea> || std::is_same_v<V, Hull>;

@@ -1,6 +1,6 @@
-// Surfaces that move: trajectories, and when two of them touch.
+// Surfaces that move: trajectories, when two of them touch, and how far apart they stay.
 
-#include <snug/time_of_contact.h>
+#include <snug/clearance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,16 @@
 #include "call.h"
 #include "fields.h"
 #include "poses.h"
+#include "state.h"
 #include "surface.h"
+
+namespace snug {
+
+auto members_of(python::Either<Clearance> auto& t) {
+  return std::tie(t.distance, t.time, t.witness, t.contained, t.spans, t.outcome, t.steps, t.stats);
+}
+
+}  // namespace snug
 
 namespace snug::python {
 namespace {
@@ -61,21 +70,39 @@ Trajectory steady(const py::object& pose, const py::object& velocity, const py::
 }
 
 Answers<TimeOfContact> first_contact(const PySurface& py_a, const py::object& motion_a, const PySurface& py_b,
-                                     const py::object& motion_b, const py::object& tolerance, bool solid,
-                                     bool prove_contact, const py::object& max_splits,
-                                     const py::object& threads, const py::object& progress,
-                                     const py::object& rigid) {
+                                     const py::object& motion_b, const py::object& tolerance,
+                                     const py::object& margin, bool solid, bool prove_contact,
+                                     const py::object& max_splits, const py::object& threads,
+                                     const py::object& progress, const py::object& rigid) {
   const Surface a = py_a.surface(), b = py_b.surface();  // which an update() meanwhile does not reach
   const Trajectory of_a = motion_of(motion_a, "motion_a", rigid),
                    of_b = motion_of(motion_b, "motion_b", rigid);
   TimeOfContactOptions options;
   options.tolerance = length_of(tolerance, std::max(a.size(), b.size()), "tolerance");
+  options.margin = length_of(margin, std::max(a.size(), b.size()), "margin").value_or(0);
   options.solid = solid;
   options.prove_contact = prove_contact;
   Call call(progress, run_of(threads, max_splits));
   return call.run([&](const Run& run) {
     return Answers<TimeOfContact>(time_of_contact(a, of_a, b, of_b, options, run));
   });
+}
+
+Answers<Clearance> clearance_of(const PySurface& py_a, const py::object& motion_a, const PySurface& py_b,
+                                const py::object& motion_b, const py::object& absolute,
+                                const py::object& relative, bool solid, const py::object& max_splits,
+                                const py::object& threads, const py::object& progress,
+                                const py::object& rigid) {
+  const Surface a = py_a.surface(), b = py_b.surface();
+  const Trajectory of_a = motion_of(motion_a, "motion_a", rigid),
+                   of_b = motion_of(motion_b, "motion_b", rigid);
+  ClearanceOptions options;
+  options.absolute = length_of(absolute, std::max(a.size(), b.size()), "absolute");
+  options.relative = number_of(relative, "relative");
+  options.solid = solid;
+  Call call(progress, run_of(threads, max_splits));
+  return call.run(
+      [&](const Run& run) { return Answers<Clearance>(clearance(a, of_a, b, of_b, options, run)); });
 }
 
 bool meets(const Answers<TimeOfContact>& self) {
@@ -143,17 +170,29 @@ void add_time_of_contact(py::module_& module) {
   });
 }
 
+void add_clearance(py::module_& module) {
+  AnswerClass<ClearanceSpan> spans(
+      module, "ClearanceSpans",
+      "A motion in parts: the least distance in each. `lower` and `upper` are those of `distance`.");
+  spans.fields().repr(
+      [](const ClearanceSpan& t) { return "time " + text_of(t.time) + ", distance " + text_of(t.distance); });
+  AnswerClass<Clearance> answers(module, "Clearance", "How far apart two surfaces are while they move.");
+  answers.fields().repr(
+      [](const Clearance& t) { return text_of(t.distance) + ", at time " + text_of(t.time); });
+}
+
 }  // namespace
 
 void add_motions(py::module_& module) {
   add_trajectory(module);
   add_time_of_contact(module);
+  add_clearance(module);
   using py::arg;
   const py::object none = py::none();
   module.def(
       "time_of_contact", first_contact, arg("a"), arg("motion_a"), arg("b"), arg("motion_b"), py::kw_only(),
-      arg("tolerance") = "0.1%", arg("solid") = false, arg("prove_contact") = true, arg("max_splits") = none,
-      arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+      arg("tolerance") = "0.1%", arg("margin") = 0, arg("solid") = false, arg("prove_contact") = true,
+      arg("max_splits") = none, arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
       "When do two moving limit surfaces first touch?\n\n"
       "motion_a, motion_b: a Trajectory, a pose as collide() takes it, or None, which stay, or n poses to "
       "pass "
@@ -161,12 +200,30 @@ void add_motions(py::module_& module) {
       "last equally long, or one stays.\n"
       "tolerance: mesh units, or percent of the larger surface's size; surfaces this close may be 'within', "
       "and the interval\n"
-      "is narrowed until they move by at most this much in it. solid: compare the solids that closed "
-      "surfaces "
-      "bound.\n"
+      "is narrowed until they move by at most this much in it. margin: contact is being at most so far "
+      "apart. solid: compare\n"
+      "the solids that closed surfaces bound.\n"
       "prove_contact: before 'within' try to prove 'intersecting'. max_splits: most work in each unit of "
       "time.\n\n"
-      "Guarantee: no common point before `lower`, for the exact motions; with 'separated' at no time.\n"
+      "Guarantee: no common point before `lower`, for the exact motions; with 'separated' at no time; nor, "
+      "with a\n"
+      "margin, points that near.\n"
+      "Raises ValueError, PoseError, MeshError (solid: a surface is not closed), OverflowError.");
+  module.def(
+      "clearance", clearance_of, arg("a"), arg("motion_a"), arg("b"), arg("motion_b"), py::kw_only(),
+      arg("absolute") = none, arg("relative") = none, arg("solid") = false, arg("max_splits") = none,
+      arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+      "How far apart do two moving limit surfaces stay? An envelope of their distance over time, proved "
+      "between\n"
+      "samples, too.\n\n"
+      "motion_a, motion_b: as for time_of_contact(). absolute (mesh units, or percent of the larger "
+      "surface's "
+      "size),\n"
+      "relative: how narrow the interval of each span must become; by default 0.1 % of the size or 10 % of "
+      "the\n"
+      "distance. solid, max_splits: as for time_of_contact().\n\n"
+      "Guarantee: at each time of `spans[i]` they are at least `spans.lower[i]` apart, for the exact "
+      "motions.\n"
       "Raises ValueError, PoseError, MeshError (solid: a surface is not closed), OverflowError.");
 }
 

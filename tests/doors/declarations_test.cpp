@@ -52,6 +52,7 @@ SNUG_NAMED(PatchPlace, "PatchPlace");
 SNUG_NAMED(SearchStats, "SearchStats");
 SNUG_NAMED(fields::SelfContactStats, "SelfContactStats");
 SNUG_NAMED(fields::MeasureStats, "MeasureStats");
+SNUG_NAMED(ClearanceSpan, "ClearanceSpan");
 SNUG_NAMED(PatchContact, "PatchContact");
 SNUG_NAMED(ContactRegion, "ContactRegion");
 SNUG_NAMED(CurveBox, "CurveBox");
@@ -130,7 +131,8 @@ std::string interface_of(const std::string& name) {
 std::string script_part() {
   return interface_of<SearchStats>("SearchStats") + interface_of<Collision>("Collision") +
          interface_of<Distance>("Distance") + interface_of<Penetration>("Penetration") +
-         interface_of<TimeOfContact>("TimeOfContact") + interface_of<PatchContact>("PatchContact") +
+         interface_of<TimeOfContact>("TimeOfContact") + interface_of<ClearanceSpan>("ClearanceSpan") +
+         interface_of<Clearance>("Clearance") + interface_of<PatchContact>("PatchContact") +
          interface_of<ContactRegion>("ContactRegion") + interface_of<CurveBox>("CurveBox") +
          interface_of<IntersectionCurve>("IntersectionCurve") + interface_of<ContactArea>("ContactArea") +
          interface_of<OpenBox>("OpenBox") + interface_of<Contacts>("Contacts") +
@@ -139,7 +141,7 @@ std::string script_part() {
          interface_of<ClosestPoint>("ClosestPoint") + interface_of<RayHit>("RayHit") +
          interface_of<RayHits>("RayHits") + interface_of<SurfacePoint>("SurfacePoint") +
          interface_of<BoundSummary>("BoundSummary") + interface_of<Tessellation>("Tessellation") +
-         interface_of<Hull>("Hull") + interface_of<HullProblem>("HullProblem") +
+         interface_of<Brep>("Brep") + interface_of<Hull>("Hull") + interface_of<HullProblem>("HullProblem") +
          interface_of<Hulls>("Hulls") + interface_of<Envelope>("Envelope") +
          interface_of<fields::MeasureStats>("MeasureStats") + interface_of<Measures>("Measures") +
          interface_of<OneSidedDistance>("OneSidedDistance") + interface_of<Deviation>("Deviation");
@@ -167,6 +169,8 @@ std::string python_type() {
     return "Ids";
   } else if constexpr (std::is_same_v<V, std::vector<ContactRegion>>) {
     return "ContactRegions";
+  } else if constexpr (std::is_same_v<V, std::vector<ClearanceSpan>>) {
+    return "ClearanceSpans";
   } else if constexpr (std::is_same_v<V, std::vector<SelfContactPair>>) {
     return "SelfContactPairs";
   } else if constexpr (is_one_of<V, std::vector<IntersectionCurve>, std::vector<ContactArea>>) {
@@ -235,7 +239,7 @@ std::string many(const std::string& name, std::vector<std::string> bases = {}) {
     using V = FieldValue<Answer, Of>;
     std::string base;
     const std::string type = many_type<V>(&base);
-    if (!base.empty()) bases.push_back(base);
+    if (!base.empty() && std::find(bases.begin(), bases.end(), base) == bases.end()) bases.push_back(base);
     if (!type.empty())
       lines.emplace_back(std::is_same_v<V, std::optional<Place>> ? "face" : field.name, type);
   });
@@ -256,6 +260,7 @@ std::string one(const std::string& name, const std::vector<std::string>& bases =
 std::string python_part() {
   return "\n" + many<Collision>("Collision", {"_Verdicts"}) + many<Distance>("Distance") +
          many<Penetration>("Penetration") + many<TimeOfContact>("TimeOfContact", {"_Truth"}) +
+         many<ClearanceSpan>("ClearanceSpans") + many<Clearance>("Clearance") +
          many<ContactRegion>("ContactRegions") + one<IntersectionCurve>("IntersectionCurve", {"_Curve"}) +
          one<ContactArea>("ContactArea") + one<Contacts>("Contacts", {"_Truth"}) +
          many<SelfContactPair>("SelfContactPairs") + one<SelfContact>("SelfContact", {"_Truth"}) +
@@ -414,7 +419,11 @@ TEST(declarations, of_the_command_are_those_of_the_fields) {
       .and_of_its_own({"absolute", "relative", "place_a", "place_b", "certificate"});
   Page("time-of-contact.md")
       .tells<TimeOfContact>(table)
-      .and_of_its_own({"tolerance", "duration", "place_a", "place_b"});
+      .and_of_its_own({"tolerance", "margin", "duration", "place_a", "place_b"});
+  Page("clearance.md")
+      .tells<Clearance>(table)
+      .tells<ClearanceSpan>("| `spans` |")
+      .and_of_its_own({"absolute", "relative", "duration", "place_a", "place_b"});
   Page("self-contact.md")
       .tells<SelfContact>(table)
       .tells<SelfContactPair>("| `pairs` |")

@@ -23,6 +23,32 @@ def test_the_first_contact_is_not_before_the_lower_end(bracket, pin):
     assert pickle.loads(pickle.dumps(first)).lower == first.lower
 
 
+def test_clearance_is_an_envelope(bracket, pin):
+    path = [moved(0, 0, 3), turned(90, 2.5, 0, 2), moved(6, 0, 1)]
+    room = snug.clearance(bracket, None, pin, path, absolute=0.02)
+    assert room.outcome == "complete" and room.lower <= room.upper <= room.lower + 0.02
+    spans, through = room.spans, snug.Trajectory.through(path)
+    assert spans.time.shape == (len(spans), 2) and (spans.time[1:, 0] == spans.time[:-1, 1]).all()
+    assert spans.time[0, 0] == 0 and spans.time[-1, 1] == 2 and room.lower == spans.lower.min()
+    times = np.linspace(0, 2, 200)
+    found = snug.distance(bracket, pin, pose_b=[through.at(time) for time in times])
+    at = np.clip(np.searchsorted(spans.time[:, 1], times), 0, len(spans) - 1)
+    assert (spans.lower[at] <= found.upper).all()
+    here = snug.distance(bracket, pin, pose_b=through.at(room.time))
+    assert here.lower <= room.upper and room.points.shape == (2, 3) and room.steps > 3
+    first = snug.time_of_contact(bracket, None, pin, path, margin=room.upper + 0.3)
+    assert first.verdict == "within" and (found.upper[times < first.lower] > room.upper + 0.3).all()
+    assert snug.time_of_contact(bracket, None, pin, path, margin=0.9 * room.lower).verdict == "separated"
+    assert repr(room).startswith("<snug.Clearance 0.") and repr(spans[0]).startswith("<snug.ClearanceSpans time 0 to ")
+    again = pickle.loads(pickle.dumps(room))
+    np.testing.assert_array_equal(again.spans.distance, spans.distance)
+    for wrong in ({"absolute": -1}, {"relative": np.nan}, {"max_splits": -1}):
+        with pytest.raises(ValueError):
+            snug.clearance(bracket, None, pin, path, **wrong)
+    with pytest.raises(ValueError, match="margin"):
+        snug.time_of_contact(bracket, None, pin, path, margin=-1)
+
+
 def test_what_misses_and_what_is_not_decided(bracket, pin):
     aside = snug.time_of_contact(bracket, None, pin, [moved(9), moved(9, 0, -3)])
     assert aside.verdict == "separated" and not aside and aside.lower == 1 and aside.upper == np.inf

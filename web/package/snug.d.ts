@@ -11,7 +11,7 @@ export type Boundary = "none" | "edge-only" | "edge-and-corner";
 
 /** What the library refuses: the message names the file, line, face or vertex, and the next step. */
 export class SnugError extends Error {
-  readonly problem: "unreadable" | "refused" | "pose" | "value" | "unrepresentable" | "memory";
+  readonly problem: "unreadable" | "refused" | "pose" | "value" | "unrepresentable" | "memory" | "interrupted";
 }
 
 export interface ReadOptions {
@@ -43,13 +43,17 @@ export interface WitnessPlace extends Place {
 }
 
 
+export interface CallOptions {
+  maxSplits?: number;
+  /** Called with the fraction done; false ends the call, which throws. */
+  progress?: (done: number) => boolean | void;
+}
 /** Poses default to where the files put the parts; lengths are in mesh units. */
-export interface PairOptions {
+export interface PairOptions extends CallOptions {
   poseA?: Pose;
   poseB?: Pose;
   /** Compare the solids that closed surfaces bound: one inside the other intersects it. */
   solid?: boolean;
-  maxSplits?: number;
   /** Prove the answer, too: docs/certificates.md. */
   certificate?: boolean;
 }
@@ -102,6 +106,41 @@ export interface Geometry {
   index: { array: ArrayLike<number> } | null;
 }
 
+/** Answers to many poses, one after the other. */
+export interface ManyDistances {
+  lower: Float64Array;
+  upper: Float64Array;
+}
+export interface ManyCollisions extends ManyDistances {
+  /** 0 separated, 1 within, 2 intersecting, 3 undecided. */
+  verdicts: Uint8Array;
+}
+/** Surfaces that move through a list of poses, one unit of time from each to the next. */
+export interface MotionOptions extends CallOptions {
+  motionA?: readonly Pose[];
+  motionB?: readonly Pose[];
+  solid?: boolean;
+}
+/** Counts of a mesh, broken ones too. */
+export interface Inspection {
+  scheme: Scheme;
+  usedVertices: number;
+  edges: number;
+  boundaryEdges: number;
+  components: number;
+  closed: boolean;
+  /** legal: questions are answered all the same. */
+  defects: { kind: string; text: string; legal: boolean }[];
+  /** What stands where something else does and is not joined. */
+  coincidences: Record<string, number>;
+  [count: string]: unknown;
+}
+
+/** The file of a Brep. */
+export interface Brep {
+  text: string;
+}
+
 /** Limit points and normals on a lattice of 2^level steps a patch; each patch has its own. For drawing. */
 export interface Samples {
   positions: Float32Array;
@@ -110,12 +149,11 @@ export interface Samples {
   /** Upper bound of the error of all coordinates. */
   error: number;
 }
-export interface BoundOptions {
+export interface BoundOptions extends CallOptions {
   /** Split until each radius is at most half of this. */
   error?: number;
   /** Without it: split every patch this many times. */
   level?: number;
-  maxSplits?: number;
 }
 /** Of piece i: base has 9 numbers, three corners of the triangle whose sweep by radius[i] contains it; lower and upper have 9
  *  numbers each, three boxes whose hull contains it, too. */
@@ -193,6 +231,22 @@ export interface TimeOfContact {
   /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number | null;
   /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
   /** With solid: whose surface has a point inside the other, if no crossing was proved. */ contained: 0 | 1 | null;
+  /** Number of times that were looked at. */ steps: number;
+  /** The work that was done. */ stats: SearchStats;
+}
+export interface ClearanceSpan {
+  /** From its beginning to its end. */ time: Interval;
+  /** Contains the least distance at all times in it. */ distance: Interval;
+}
+export interface Clearance {
+  /** 'complete', 'budget-spent' or 'at-rounding'; the answer holds in any case. */ outcome: Outcome;
+  /** Contains the least distance of the whole motion, in mesh units. */ distance: Interval;
+  /** A time at which they are at most the upper end of `distance` apart. */ time: number;
+  /** The two closest points found at that time, on A and on B. */ witness: [Point, Point];
+  /** Upper bound, per coordinate, of how far they are from the limit points that they stand for. */ witnessError: number;
+  /** Null for a witness that was located on the other surface only. */ witnessAt: [WitnessPlace | null, WitnessPlace | null];
+  /** With solid: whose surface has a point inside the other, if no crossing was proved. */ contained: 0 | 1 | null;
+  /** From time 0 to the end, each from where the one before it ends. */ spans: ClearanceSpan[];
   /** Number of times that were looked at. */ steps: number;
   /** The work that was done. */ stats: SearchStats;
 }
@@ -308,6 +362,18 @@ export interface Tessellation {
   /** Upper bound, per coordinate, of |position - limit point|. */ positionError: number;
   /** 'complete', or 'budget-spent' where max_splits or max_triangles ended refinement. */ outcome: Outcome;
 }
+export interface Brep {
+  /** Proved: at every parameter a face is no farther than this from the limit point there. */ errorBound: number;
+  /** Proved: borders of faces are no farther than this from the edges and vertices on them. */ gapBound: number;
+  /** Degrees: the largest angle between faces measured across edges where the surface is smooth. */ breakAngle: number;
+  /** 'complete': error and angle are as small as requested; else 'budget-spent' or 'at-rounding'. */ outcome: Outcome;
+  /** Closed shells that are not voids. */ solids: number;
+  /** Closed shells that are voids of solids. */ voids: number;
+  /** Open shells. */ sheets: number;
+  /** Number of faces. */ faces: number;
+  /** Number of edges. */ edges: number;
+  /** Polynomial pieces in all faces. */ spans: number;
+}
 export interface Hull {
   /** Corners of triangles. */ positions: Float64Array;
   /** Rows of `positions`. */ triangles: Uint32Array;
@@ -381,18 +447,17 @@ export interface Surface {
     maxEdge?: number;
     maxAngle?: number;
     maxTriangles?: number;
-    maxSplits?: number;
-  }): Tessellation;
+  } & CallOptions): Tessellation;
   enclosures(options?: BoundOptions): Enclosures;
   enclosureShapes(options?: BoundOptions): EnclosureShapes;
-  hull(options?: { error?: number; inner?: boolean; outer?: boolean; maxSplits?: number }): Hulls;
+  hull(options?: { error?: number; inner?: boolean; outer?: boolean } & CallOptions): Hulls;
   /** A closed mesh around the surface, whatever it is; error: 1 % of the size, clearance: a quarter of that. */
-  envelope(options?: { error?: number; clearance?: number; maxSplits?: number }): Envelope;
+  envelope(options?: { error?: number; clearance?: number } & CallOptions): Envelope;
   evaluate(at: Place): SurfacePoint;
   /** signed: negative inside a closed surface. */
   closestPoint(
     point: Point | readonly number[],
-    options?: { absolute?: number; relative?: number; signed?: boolean; maxSplits?: number },
+    options?: { absolute?: number; relative?: number; signed?: boolean } & CallOptions,
   ): ClosestPoint;
   /** Inside a closed surface? null where that cannot be decided. */
   contains(point: Point | readonly number[]): boolean | null;
@@ -400,15 +465,19 @@ export interface Surface {
   ray(
     origin: Point | readonly number[],
     direction: Point | readonly number[],
-    options?: { query?: "nearest" | "any" | "all"; from?: number; to?: number; absolute?: number; maxSplits?: number },
+    options?: { query?: "nearest" | "any" | "all"; from?: number; to?: number; absolute?: number } & CallOptions,
   ): RayHits;
   /** within: are points so near to each other farther apart than `radius` along the surface? */
-  selfContact(options?: { within?: number; radius?: number; maxSplits?: number }): SelfContact;
+  selfContact(options?: { within?: number; radius?: number } & CallOptions): SelfContact;
   /** How far the limit surface may be from the faces of its control mesh; null with a dual scheme. */
   limitToFaces(): number | null;
-  measure(options?: { relative?: number; maxSplits?: number }): Measures;
+  measure(options?: { relative?: number } & CallOptions): Measures;
   /** The control mesh after `level` (1) steps of subdivision; limit: at limit positions. */
   subdivided(level?: number, limit?: boolean): Cage;
+  /** The bytes of a file of the control mesh; the ending of the name says which: .obj, .off, .ply, .stl, .usda or .glb. */
+  write(name?: string): Uint8Array;
+  /** A STEP file of B-spline faces that share their edges, for CAD; schemes of quads. error: 0.01 % of the size; units: mm. */
+  step(options?: { error?: number; maxAngle?: number; name?: string; units?: "mm" | "cm" | "m" | "inch"; protocol?: "ap242" | "ap214" } & CallOptions): Brep;
   delete(): void;
 }
 
@@ -418,27 +487,30 @@ export interface SnugModule {
   fromArrays(arrays: MeshArrays, options?: ReadOptions): Surface;
   /** The triangles of a BufferGeometry of three.js: flat, and equal vertices merged, unless the options say otherwise. */
   fromGeometry(geometry: Geometry, options?: ReadOptions): Surface;
+  /** What is in a mesh, and what is wrong with it. */
+  inspect(arrays: MeshArrays, options?: { scheme?: Scheme | "auto" }): Inspection;
   collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
   distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;
+  /** For many poses of B, twelve numbers each: two to ten times as fast as one by one. */
+  collideMany(a: Surface, b: Surface, posesB: Numbers, options?: CollideOptions): ManyCollisions;
+  distanceMany(a: Surface, b: Surface, posesB: Numbers, options?: DistanceOptions): ManyDistances;
   /** Where they touch: points at most `within` from each other, and curves within `error`; both default to 0.1 % of the larger size. */
   contacts(
     a: Surface,
     b: Surface,
-    options?: { poseA?: Pose; poseB?: Pose; within?: number; error?: number; curves?: boolean; maxSplits?: number },
+    options?: { poseA?: Pose; poseB?: Pose; within?: number; error?: number; curves?: boolean } & CallOptions,
   ): Contacts;
   /** Of two closed surfaces: the shortest translation that separates the solids. */
-  penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number; maxSplits?: number }): Penetration;
-  /** When do moving surfaces first touch? Motions pass through a list of poses, one unit of time from each to the next. */
-  timeOfContact(
-    a: Surface,
-    b: Surface,
-    options?: { motionA?: readonly Pose[]; motionB?: readonly Pose[]; tolerance?: number; solid?: boolean; proveContact?: boolean; maxSplits?: number },
-  ): TimeOfContact;
+  penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number } & CallOptions): Penetration;
+  /** When do moving surfaces first touch, or come within a margin? */
+  timeOfContact(a: Surface, b: Surface, options?: { tolerance?: number; margin?: number; proveContact?: boolean } & MotionOptions): TimeOfContact;
+  /** How far apart do moving surfaces stay? */
+  clearance(a: Surface, b: Surface, options?: { absolute?: number; relative?: number } & MotionOptions): Clearance;
   /** How far triangles deviate from a surface, and it from them. */
   deviation(
     surface: Surface,
     triangles: { positions: Numbers; triangles: Numbers },
-    options?: { absolute?: number; threshold?: number; solid?: boolean; maxSplits?: number },
+    options?: { absolute?: number; threshold?: number; solid?: boolean } & CallOptions,
   ): Deviation;
   /** after: a pose to begin with; then rotated about an axis (z) through the origin, then moved. */
   pose(steps: { after?: Pose; axis?: readonly number[]; degrees?: number; move?: readonly number[] }): number[];

@@ -113,12 +113,17 @@ void LinearPatches::split(std::uint32_t node, std::span<Node> leaves) {
 }
 
 // Not where one is beyond the other along an axis at both times: what is so at both is so between.
-bool LinearPatches::may_meet(const Node& a, const Node& b, double from, double to) {
+bool LinearPatches::may_meet(const Node& a, const Node& b, double from, double to, double margin) {
   const Box3 a_from = mixed(a.start, a.end, from), a_to = mixed(a.start, a.end, to),
              b_from = mixed(b.start, b.end, from), b_to = mixed(b.start, b.end, to);
+  const auto beyond = [margin](double upper, double lower) {
+    return margin == 0 ? upper < lower : rounded_down(lower - upper) > margin;
+  };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (a_from.upper[axis] < b_from.lower[axis] && a_to.upper[axis] < b_to.lower[axis]) return false;
-    if (b_from.upper[axis] < a_from.lower[axis] && b_to.upper[axis] < a_to.lower[axis]) return false;
+    if (beyond(a_from.upper[axis], b_from.lower[axis]) && beyond(a_to.upper[axis], b_to.lower[axis]))
+      return false;
+    if (beyond(b_from.upper[axis], a_from.lower[axis]) && beyond(b_to.upper[axis], a_to.lower[axis]))
+      return false;
   }
   return true;
 }
@@ -130,7 +135,7 @@ double LinearPatches::speed(const Node& a, const Node& b) {
 }
 
 std::optional<double> LinearPatches::meeting_speed(const LinearPatches& a, const LinearPatches& b,
-                                                   double from, double to) {
+                                                   double from, double to, double margin) {
   struct Pair {
     double speed;
     std::uint32_t depth, a, b;
@@ -142,7 +147,7 @@ std::optional<double> LinearPatches::meeting_speed(const LinearPatches& a, const
   std::priority_queue<Pair> open;
   const auto add = [&](std::uint32_t in_a, std::uint32_t in_b, std::uint32_t depth) {
     const Node &one = a.nodes_[in_a], &other = b.nodes_[in_b];
-    if (may_meet(one, other, from, to)) open.push({speed(one, other), depth, in_a, in_b});
+    if (may_meet(one, other, from, to, margin)) open.push({speed(one, other), depth, in_a, in_b});
   };
   add(0, 0, 0);
   const auto size = [](const Node& node) { return longest_side(node.start) + longest_side(node.velocity); };

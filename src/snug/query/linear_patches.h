@@ -19,10 +19,10 @@ class LinearPatches {
   /// Requires:  one patch or more; finite boxes, of vertices that faces use.
   LinearPatches(const LimitSurface& surface, std::span<const Box3> start, std::span<const Box3> end);
 
-  /// Upper bound of the speed against each other of any two limit points, one of each, that are in one place at
-  /// some time in [from, to]; nothing if no two are.
+  /// Upper bound of the speed against each other of any two limit points, one of each, that are within `margin` of each
+  /// other at some time in [from, to]; nothing if no two are.
   [[nodiscard]] static std::optional<double> meeting_speed(const LinearPatches& a, const LinearPatches& b,
-                                                           double from, double to);
+                                                           double from, double to, double margin = 0);
 
  private:
   struct Node {
@@ -30,7 +30,7 @@ class LinearPatches {
     Box3 velocity;            // as points
     std::uint32_t child = 0;  // the first of two; none for the patches of one owner
   };
-  [[nodiscard]] static bool may_meet(const Node& a, const Node& b, double from, double to);
+  [[nodiscard]] static bool may_meet(const Node& a, const Node& b, double from, double to, double margin);
   [[nodiscard]] static double speed(const Node& a, const Node& b);
   void split(std::uint32_t node, std::span<Node> leaves);
 

@@ -1,4 +1,4 @@
-#include <snug/query/moving_body.h>
+#include <snug/query/moving_pair.h>
 
 #include <algorithm>
 
@@ -121,6 +121,16 @@ MovingBody::Place MovingBody::at(double s) {
   const BoundedPose pose = piece_->at(s);
   if (!deforms()) return {{moving_.model, moving_.scratch, 0}, pose};
   return {deformation_->at(s), pose};
+}
+
+void require_same_duration(const MovingBvh& a, const MovingBvh& b) {
+  const double ends_a = a.motion.duration(), ends_b = b.motion.duration();
+  const bool deforms = !a.end.empty() || !b.end.empty();
+  const double ends = std::max({ends_a, ends_b, deforms ? 1.0 : 0.0});
+  require_value(
+      (ends_a == ends || ends_a == 0) && (ends_b == ends || ends_b == 0) && (!deforms || ends == 1),
+      "the motions last for different times; let one stay, or both last equally long, one unit of time where "
+      "control points move");
 }
 
 }  // namespace snug

@@ -63,8 +63,8 @@ struct SweptPairs::Pair {
   bool shown = false;                         // apart along some direction there
 };
 
-SweptPairs::SweptPairs(const SweptBody& a, const SweptBody& b, SearchStats& stats)
-    : bodies_{a, b}, stats_(stats) {
+SweptPairs::SweptPairs(const SweptBody& a, const SweptBody& b, double margin, SearchStats& stats)
+    : bodies_{a, b}, margin_(margin), stats_(stats) {
   int exponent = INT_MIN;
   for (const SweptBody& body : bodies_) {
     exponent = std::max(exponent, -body.model.surface().scale().exponent());
@@ -112,7 +112,8 @@ SweptPairs::Sample SweptPairs::sample(double time) const {
   result.turn_doubt = turns;
   for (std::size_t f = 0; f < 3; ++f) {
     const double turned = f == neither ? 0 : turns[f] * widest;
-    result.height_doubt[f] = enlarged(world_.apply(doubt + turned) + roundings) + 8 * underflow_error;
+    result.height_doubt[f] =
+        enlarged(world_.apply(doubt + turned + length_slack * margin_) + roundings) + 8 * underflow_error;
   }
   return result;
 }

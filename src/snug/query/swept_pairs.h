@@ -17,17 +17,17 @@ struct SweptBody {
   const PieceMotion& motion;
 };
 
-/// Proves that two rigid surfaces do not meet for a while. A pair of nodes is dropped where one direction, which
+/// Proves that two rigid surfaces stay farther apart than a margin for a while. A pair of nodes is dropped where one direction, which
 /// stays or turns with one of the surfaces, keeps them apart over an interval of time: at its ends and in its
 /// middle by more than heights along it can bend between. Else a node is opened, if it is large for how far the
 /// nodes move meanwhile, or the time is halved; the earlier half comes first.
 /// Source:    derivations/time_of_contact.md, "Over an interval of time".
 class SweptPairs {
  public:
-  /// Requires:  the bodies outlive it.
-  SweptPairs(const SweptBody& a, const SweptBody& b, SearchStats& stats);
+  /// Requires:  the bodies outlive it; a margin that is finite and >= 0, mesh units.
+  SweptPairs(const SweptBody& a, const SweptBody& b, double margin, SearchStats& stats);
 
-  /// The time up to which, itself included, there is no common point: `to`, or `from` where nothing is shown,
+  /// The time up to which, itself included, no two points are within the margin: `to`, or `from` where nothing is shown,
   /// or before an interval as short as `least`, or where the budget of splits and of pairs compared ends.
   /// Requires:  0 <= from < to <= 1, times of the piece.
   [[nodiscard]] double clear(double from, double to, double least, std::uint64_t budget,
@@ -75,6 +75,7 @@ class SweptPairs {
   void open(const Nodes& nodes, std::size_t side, std::vector<Nodes>& out);
 
   std::array<SweptBody, 2> bodies_;
+  double margin_;
   SearchStats& stats_;
   PowerOfTwo world_;
   std::array<double, 2> scales_{};

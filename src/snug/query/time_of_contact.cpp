@@ -4,10 +4,9 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/query/moving_body.h>
+#include <snug/query/moving_pair.h>
 #include <snug/query/nesting.h>
 #include <snug/query/pair_queries.h>
-#include <snug/query/swept_pairs.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/search/solid.h>
@@ -28,6 +27,8 @@ constexpr double min_resolution = 0x1p-36;
 constexpr double reach_share = 0.8;
 // Times after the surfaces have come within the tolerance that are tried for a crossing.
 constexpr int max_probes = 7;
+// Most queries at one time beyond the first one, where there is a margin.
+constexpr int max_queries = 8;
 // Times in a row without a result.
 constexpr int max_blocked = 8;
 // Budget that one evaluation takes besides its splits: some hundred microseconds of work. None may take more than a
@@ -43,79 +44,32 @@ constexpr double share_of_step = 0.125;
 // Bounds at one time, of the exact motion.
 struct Look {
   double time = 0;
-  double lower = 0, upper = INFINITY;  // of the distance
-  bool crossing = false;
+  double lower = 0, upper = INFINITY;  // of the distance, less the margin
+  bool apart = false, crossing = false;
   // The likely distance: points found are mostly the nearest ones.
   [[nodiscard]] double likely() const { return upper < INFINITY ? upper : lower; }
 };
 
-// Both surfaces as doubles, with what these are off by where the surfaces may meet.
-struct Places {
-  PlacedBvh a, b;
-  [[nodiscard]] double doubt() const { return a.deviation + b.deviation; }
-};
-
-// Both surfaces during one piece of their motions after the other.
-class MovingPair {
- public:
-  MovingPair(const MovingBvh& a, const MovingBvh& b) : bodies_{MovingBody(a), MovingBody(b)} {}
-
-  void enter_piece(std::size_t piece) {
-    begin_ = static_cast<double>(piece);
-    for (MovingBody& body : bodies_) body.enter_piece(piece);
-  }
-  // Time at which the piece begins.
-  [[nodiscard]] double begin() const { return begin_; }
-  [[nodiscard]] double duration() const { return std::max(bodies_[0].duration(), bodies_[1].duration()); }
-  [[nodiscard]] bool deforms() const { return bodies_[0].deforms() || bodies_[1].deforms(); }
-  [[nodiscard]] double size() const {
-    return share_of_size(1, bodies_[0].model().surface().size(), bodies_[1].model().surface().size());
-  }
-  [[nodiscard]] MovingBody& operator[](std::size_t side) { return bodies_[side]; }
-
-  [[nodiscard]] Places at(double time) {
-    const double s = time - begin_;  // exact: both are at most a factor of 2 apart, or begin_ is 0
-    const MovingBody::Place a = bodies_[0].at(s), b = bodies_[1].at(s);
-    const Ball &ball_a = a.shape.model.ball(), &ball_b = b.shape.model.ball();
-    // A common point is at most so far from the origin of either surface, and so are all its own.
-    const double between = distance(a.pose.pose.apply(ball_a.centre), b.pose.pose.apply(ball_b.centre));
-    const double beyond = 2 * (between + ball_a.radius + ball_b.radius + a.shape.error + b.shape.error);
-    const double reach_a = enlarged(max_abs(ball_a.centre - Point3{}) + ball_a.radius + beyond),
-                 reach_b = enlarged(max_abs(ball_b.centre - Point3{}) + ball_b.radius + beyond);
-    return {{a.shape.model, a.shape.scratch, a.pose.pose, a.deviation(reach_a)},
-            {b.shape.model, b.shape.scratch, b.pose.pose, b.deviation(reach_b)}};
-  }
-  [[nodiscard]] SweptBody swept(std::size_t side) const {
-    return {bodies_[side].model(), bodies_[side].scratch(), bodies_[side].piece()};
-  }
-
- private:
-  std::array<MovingBody, 2> bodies_;
-  double begin_ = 0;
-};
-
-// An upper bound of the speed against each other of any two points that may be in one place later in the piece, and the
-// share of it at which distances shrank.
+// An upper bound of the speed against each other of any two points that may be within the margin of each other later in the
+// piece, and the share of it at which distances shrank.
 class ClosingSpeed {
  public:
   ClosingSpeed() = default;
   explicit ClosingSpeed(MovingPair& bodies) {
-    MovingBody &a = bodies[0], &b = bodies[1];
     if (bodies.deforms()) {
-      linear_ = {a.linear_patches(), b.linear_patches()};
+      linear_ = {bodies[0].linear_patches(), bodies[1].linear_patches()};
       if (linear_[0] && linear_[1]) return;
       linear_ = {};
     }
-    most_ = enlarged(a.speed() + b.speed());
-    if (!bodies.deforms() && a.piece().straight() && b.piece().straight()) {
-      most_ = std::min(most_, PieceMotion::relative_speed(a.piece(), a.model(), b.piece(), b.model()));
-    }
+    most_ = bodies.speed();
   }
-  // Where all patches go along lines, only those that may meet in [from, to] of the piece count. False if there are none.
-  [[nodiscard]] bool narrow(double from, double to) {
+  // Where all patches go along lines, only those that may be within `margin` of each other in [from, to] of the piece count.
+  // False if there are none.
+  [[nodiscard]] bool narrow(double from, double to, double margin) {
     if (!linear_[0] || !linear_[1] || span_ == Interval(from, to)) return true;
     span_ = {from, to};
-    const std::optional<double> narrowed = LinearPatches::meeting_speed(*linear_[0], *linear_[1], from, to);
+    const std::optional<double> narrowed =
+        LinearPatches::meeting_speed(*linear_[0], *linear_[1], from, to, margin);
     if (narrowed && most_ > 0 && *narrowed > 0) share_ = std::min(1.0, share_ * most_ / *narrowed);
     most_ = narrowed.value_or(0);
     return narrowed.has_value();
@@ -229,9 +183,9 @@ struct Progress {
 
 // The surfaces at time 0, as far as they are known.
 struct Start {
-  bool apart = false;             // as surfaces
-  std::optional<bool> outside{};  // of each other, once known
-  Nesting nested{};               // of solids
+  bool apart = false, clear = false;  // as surfaces; farther than the margin
+  std::optional<bool> outside{};      // of each other, once known
+  Nesting nested{};                   // of solids
 
   [[nodiscard]] Nesting nest(MovingPair& bodies, const WorkMonitor& monitor) const {
     return apart ? nesting(bodies[0].at_start(), bodies[1].at_start(), monitor)
@@ -285,10 +239,10 @@ class FirstContactSearch {
   // Only what may meet from lower_ on counts.
   void narrow(double end) {
     const double to = std::min(end, upper_.crossing), begin = bodies_.begin();
-    if (!speed_.narrow(lower_ - begin, to - begin)) lower_ = to;
+    if (!speed_.narrow(lower_ - begin, to - begin, options_.margin)) lower_ = to;
   }
 
-  [[nodiscard]] Places begin_look(double time) {
+  [[nodiscard]] PlacesInTime begin_look(double time) {
     ++progress_.looks;
     work_.count_look();
     return bodies_.at(time);
@@ -296,26 +250,48 @@ class FirstContactSearch {
 
   Look look_at(double time, double end) {
     work_.monitor.report(time / std::max(bodies_.duration(), 1.0));
-    const Places at = begin_look(time);
+    const PlacesInTime at = begin_look(time);
     Look look{.time = time};
-    const double gap = root_gap(at.a, at.b, INFINITY) * (1 - 4 * unit_roundoff) - at.doubt();
+    const double gap = beyond_margin(root_gap(at.a, at.b, INFINITY) * (1 - 4 * unit_roundoff) - at.doubt());
     if (gap > speed_.way(end - time)) {  // enough for all that is left of the piece
       look.lower = gap;
+      look.apart = true;
       return look;
     }
-    const Distance found = distance(at.a, at.b, accuracy_.wanted(), work_.for_look());
-    work_.add(found.stats);
+    const Distance found = distance_at(at, work_.for_look());
     look.crossing = found.distance.upper == 0;
-    look.lower = std::max(0.0, rounded_down(found.distance.lower - at.doubt()));
-    look.upper = look.crossing ? 0 : enlarged(found.distance.upper + at.doubt());
+    look.apart = rounded_down(found.distance.lower - at.doubt()) > 0;
+    look.lower = std::max(0.0, beyond_margin(rounded_down(found.distance.lower - at.doubt())));
+    look.upper = look.crossing ? 0 : upper_beyond_margin(found.distance.upper + at.doubt());
     return look;
+  }
+  [[nodiscard]] double beyond_margin(double lower) const {
+    return options_.margin == 0 ? lower : rounded_down(lower - options_.margin);
+  }
+  [[nodiscard]] double upper_beyond_margin(double upper) const {
+    return std::max(0.0, rounded_up(enlarged(upper) - options_.margin));
+  }
+  // A relative precision is of what is beyond the margin: asked again while that is less than was thought.
+  Distance distance_at(const PlacesInTime& at, const Run& run) {
+    const DistanceOptions usual = accuracy_.wanted();
+    Distance found = distance(at.a, at.b, usual, run);
+    work_.add(found.stats);
+    for (int i = 0; i < max_queries && options_.margin > 0; ++i) {
+      const double rest = relative * std::max(0.0, found.distance.upper - options_.margin),
+                   wanted = std::max(*usual.absolute, rest);
+      const bool narrow = found.distance.upper - found.distance.lower <= wanted;
+      if (narrow || found.distance.lower >= options_.margin + 2 * rest) break;
+      found = distance(at.a, at.b, {.absolute = wanted}, run);
+      work_.add(found.stats);
+    }
+    return found;
   }
 
   // Tries to prove contact at a time, by a crossing or by a point of one surface inside of the other one that
   // was not inside at the beginning.
   bool probe(double time) {
     work_.monitor.checkpoint();
-    const Places at = begin_look(time);
+    const PlacesInTime at = begin_look(time);
     const CollideOptions wanted{.tolerance = 0, .witness = WitnessKind::none, .prove_contact = true};
     const Collision found = collide(at.a, at.b, wanted, work_.for_look());
     work_.add(found.stats);
@@ -333,7 +309,8 @@ class FirstContactSearch {
   bool start() {
     const double clear = lower_, end = bodies_.duration() > 0 ? 1 : 0;
     const Look look = look_at(0, end);
-    start_.apart = look.lower > 0 || clear > 0;
+    start_.apart = look.apart || clear > 0;
+    start_.clear = look.lower > 0 || clear > 0;
     if (options_.solid && !look.crossing) {
       start_.nested = start_.nest(bodies_, work_.monitor);
       if (start_.nested.inner) {
@@ -347,7 +324,7 @@ class FirstContactSearch {
       start_.outside = start_.apart;
     }
     take(look, end);
-    return look.crossing || end == 0;
+    return upper_.crossing == 0 || end == 0;
   }
 
   // Is the time between two so short that it is not worth making shorter?
@@ -357,7 +334,7 @@ class FirstContactSearch {
 
   // Takes into account what is known at a time.
   void take(const Look& look, double end) {
-    if (look.crossing) return meet(look.time);
+    if (look.crossing && options_.margin == 0) return meet(look.time);
     note_distance(look.time, look.upper);
     if (look.lower > 0) {
       ahead_.push_back(look);
@@ -413,7 +390,7 @@ class FirstContactSearch {
       if (upper_.crossing <= end && short_enough(lower_, last)) return false;
       const bool blocked = upper_.undecided.count >= max_blocked;
       if (upper_.near() <= end && (short_enough(lower_, upper_.near()) || blocked)) {
-        if (!probed_ && options_.prove_contact && find_crossing(last)) continue;
+        if (!probed_ && options_.prove_contact && options_.margin == 0 && find_crossing(last)) continue;
         if (upper_.crossing > end || blocked) return false;
       }
       if (work_.left() == 0) return false;
@@ -432,7 +409,7 @@ class FirstContactSearch {
   bool follow(double end) {
     const double before = lower_, looked = progress_.first ? before - progress_.first->time : 0,
                  least = share_of_step * accuracy_.goal() / speed_.most();
-    SweptPairs pairs(bodies_.swept(0), bodies_.swept(1), work_.stats);
+    SweptPairs pairs(bodies_.swept(0), bodies_.swept(1), options_.margin, work_.stats);
     bool faster = true;
     for (std::uint64_t& most = progress_.allowance; faster && lower_ < end && work_.left() > 0; most *= 2) {
       const double begin = bodies_.begin(), from = lower_;
@@ -479,7 +456,7 @@ class FirstContactSearch {
 
   // Is there no contact to the end?
   [[nodiscard]] bool over() const {
-    return bodies_.duration() > 0 ? lower_ >= bodies_.duration() : start_.apart && start_.nested.certain;
+    return bodies_.duration() > 0 ? lower_ >= bodies_.duration() : start_.clear && start_.nested.certain;
   }
 
   TimeOfContact result() {
@@ -514,10 +491,9 @@ class FirstContactSearch {
     // Surfaces may have come within the tolerance in a piece before.
     const double time = answer.time.upper;
     if (time < bodies_.begin()) bodies_.enter_piece(static_cast<std::size_t>(time));
-    const Places at = bodies_.at(time);
-    const Distance found = distance(at.a, at.b, accuracy_.wanted(),
-                                    {.monitor = &work_.monitor, .max_splits = work_.most_of_look()});
-    work_.add(found.stats);
+    const PlacesInTime at = bodies_.at(time);
+    const Distance found = distance_at(at, {.monitor = &work_.monitor, .max_splits = work_.most_of_look()});
+    if (options_.margin > 0 && found.distance.upper == 0) answer.verdict = Verdict::intersecting;
     answer.witness = found.witness;
     for (LimitPoint& point : *answer.witness) point.error = enlarged(point.error + at.doubt());
   }
@@ -548,13 +524,8 @@ TimeOfContact time_of_contact(const DeformingSurface& surface_a, const Deforming
     wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
   }
   require_length(*wanted.tolerance, "time of contact: the tolerance");
-  const double ends_a = a.motion.duration(), ends_b = b.motion.duration();
-  const bool deforms = !a.end.empty() || !b.end.empty();
-  const double ends = std::max({ends_a, ends_b, deforms ? 1.0 : 0.0});
-  require_value(
-      (ends_a == ends || ends_a == 0) && (ends_b == ends || ends_b == 0) && (!deforms || ends == 1),
-      "time of contact: the motions last for different times; let one stay, or both last equally long, "
-      "one unit of time where control points move");
+  require_length(wanted.margin, "time of contact: the margin");
+  require_same_duration(a, b);
   if (options.solid) {
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
