@@ -35,7 +35,7 @@ async function makePackage() {
   await mkdir(folder, { recursive: true });
   await writeFile(join(folder, "snug.js"), await bundled("package/snug.js", { format: "esm", target: "es2022", external: ["node:fs/promises"] }));
   await cp(wasm, join(folder, "snug.wasm"));
-  for (const name of ["snug.d.ts", "package.json", "README.md"]) await cp(join(here, "package", name), join(folder, name));
+  for (const name of ["snug.d.ts", "worker.js", "worker.d.ts", "thread.js", "package.json", "README.md"]) await cp(join(here, "package", name), join(folder, name));
   await cp(join(here, "../LICENSE"), join(folder, "LICENSE"));
 }
 

@@ -67,18 +67,26 @@ class Proof {
   Certificate certificate_;
 };
 
+CollideOptions collide_options(const val& options) {
+  CollideOptions how;
+  how.tolerance = option<double>(options, "tolerance");
+  how.margin = option<double>(options, "margin").value_or(0);
+  how.solid = option<bool>(options, "solid").value_or(false);
+  how.measure = option<bool>(options, "measure").value_or(false);
+  how.prove_contact = option<bool>(options, "proveContact").value_or(false);
+  return how;
+}
+DistanceOptions distance_options(const val& options) {
+  return {.absolute = option<double>(options, "absolute"),
+          .relative = option<double>(options, "relative"),
+          .solid = option<bool>(options, "solid").value_or(false)};
+}
 val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
   return guarded([&] {
     const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
     const PlacedSurface b(part_b.surface(), motion_of(options["poseB"]));
-    CollideOptions how;
-    how.tolerance = option<double>(options, "tolerance");
-    how.margin = option<double>(options, "margin").value_or(0);
-    how.solid = option<bool>(options, "solid").value_or(false);
-    how.measure = option<bool>(options, "measure").value_or(false);
-    how.prove_contact = option<bool>(options, "proveContact").value_or(false);
     Proof proof(options);
-    const Collision answer = collide(a, b, how, proof.with(run_of(options)));
+    const Collision answer = collide(a, b, collide_options(options), proof.with(run_of(options)));
     val result = object_of(answer, std::array{a, b});
     proof.add_to(result);
     return result;
@@ -89,15 +97,58 @@ val distance_of_parts(const Part& part_a, const Part& part_b, const val& options
   return guarded([&] {
     const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));
     const PlacedSurface b(part_b.surface(), motion_of(options["poseB"]));
-    DistanceOptions how;
-    how.absolute = option<double>(options, "absolute");
-    how.relative = option<double>(options, "relative");
-    how.solid = option<bool>(options, "solid").value_or(false);
     Proof proof(options);
-    const Distance answer = distance(a, b, how, proof.with(run_of(options)));
+    const Distance answer = distance(a, b, distance_options(options), proof.with(run_of(options)));
     val result = object_of(answer, std::array{a, b});
     proof.add_to(result);
     return result;
+  });
+}
+
+// Twelve numbers each, of B; A stays where poseA puts it.
+std::vector<PosePair> pairs_of(const val& poses, const val& options) {
+  const std::vector<double> numbers = emscripten::convertJSArrayToNumberVector<double>(poses);
+  if (numbers.size() % 12 != 0) {
+    throw InputError(InputProblem::pose, "posesB: give twelve numbers each, row by row: R | t");
+  }
+  const Motion a = motion_of(options["poseA"]);
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i < numbers.size(); i += 12) {
+    std::array<double, 12> matrix;
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(i), 12, matrix.begin());
+    pairs.push_back({a, Motion::from_3x4(matrix)});
+  }
+  return pairs;
+}
+// Columns: what an object each would take longer to make than to find.
+template <class Answer>
+val columns_of(const std::vector<Answer>& answers) {
+  std::vector<double> lower, upper;
+  for (const Answer& answer : answers) {
+    lower.push_back(answer.distance.lower);
+    upper.push_back(answer.distance.upper);
+  }
+  val result = val::object();
+  if constexpr (std::is_same_v<Answer, Collision>) {
+    std::vector<std::uint8_t> verdicts;
+    for (const Answer& answer : answers) verdicts.push_back(static_cast<std::uint8_t>(answer.verdict));
+    result.set("verdicts", copied(verdicts));
+  }
+  result.set("lower", copied(lower));
+  result.set("upper", copied(upper));
+  return result;
+}
+
+val collide_many(const Part& a, const Part& b, const val& poses, const val& options) {
+  return guarded([&] {
+    return columns_of(collide(a.surface(), b.surface(), pairs_of(poses, options), collide_options(options),
+                              run_of(options)));
+  });
+}
+val distance_many(const Part& a, const Part& b, const val& poses, const val& options) {
+  return guarded([&] {
+    return columns_of(distance(a.surface(), b.surface(), pairs_of(poses, options), distance_options(options),
+                               run_of(options)));
   });
 }
 
@@ -133,6 +184,13 @@ Trajectory trajectory_of(const val& poses, const char* what) {
   return Trajectory::through(motions);
 }
 
+// Where motions put two parts at a time.
+std::array<PlacedSurface, 2> placed_at(double time, const Part& part_a, const Trajectory& motion_a,
+                                       const Part& part_b, const Trajectory& motion_b) {
+  const auto pose = [&](const Trajectory& motion) { return motion.at(std::min(time, motion.duration())); };
+  return {PlacedSurface(part_a.surface(), pose(motion_a)), PlacedSurface(part_b.surface(), pose(motion_b))};
+}
+
 val time_of_contact_of_parts(const Part& part_a, const Part& part_b, const val& options) {
   return guarded([&] {
     const Trajectory motion_a = trajectory_of(options["motionA"], "motionA"),
@@ -141,12 +199,25 @@ val time_of_contact_of_parts(const Part& part_a, const Part& part_b, const val& 
     how.tolerance = option<double>(options, "tolerance");
     how.solid = option<bool>(options, "solid").value_or(false);
     how.prove_contact = option<bool>(options, "proveContact").value_or(true);
+    how.margin = option<double>(options, "margin").value_or(0);
     const TimeOfContact answer =
         time_of_contact(part_a.surface(), motion_a, part_b.surface(), motion_b, how, run_of(options));
-    const double time = std::isfinite(answer.time.upper) ? answer.time.upper : 0;
-    const auto pose = [&](const Trajectory& motion) { return motion.at(std::min(time, motion.duration())); };
-    const PlacedSurface a(part_a.surface(), pose(motion_a)), b(part_b.surface(), pose(motion_b));
-    return object_of(answer, std::array{a, b});
+    return object_of(answer, placed_at(std::isfinite(answer.time.upper) ? answer.time.upper : 0, part_a,
+                                       motion_a, part_b, motion_b));
+  });
+}
+
+val clearance_of_parts(const Part& part_a, const Part& part_b, const val& options) {
+  return guarded([&] {
+    const Trajectory motion_a = trajectory_of(options["motionA"], "motionA"),
+                     motion_b = trajectory_of(options["motionB"], "motionB");
+    ClearanceOptions how;
+    how.absolute = option<double>(options, "absolute");
+    how.relative = option<double>(options, "relative");
+    how.solid = option<bool>(options, "solid").value_or(false);
+    const Clearance answer =
+        clearance(part_a.surface(), motion_a, part_b.surface(), motion_b, how, run_of(options));
+    return object_of(answer, placed_at(answer.time, part_a, motion_a, part_b, motion_b));
   });
 }
 
@@ -169,8 +240,11 @@ EMSCRIPTEN_BINDINGS(pairs) {
   emscripten::function("pose", &make_pose);
   emscripten::function("collide", &collide_parts);
   emscripten::function("distance", &distance_of_parts);
+  emscripten::function("collideMany", &collide_many);
+  emscripten::function("distanceMany", &distance_many);
   emscripten::function("contacts", &contacts_of_parts);
   emscripten::function("penetration", &penetration_of_parts);
   emscripten::function("timeOfContact", &time_of_contact_of_parts);
+  emscripten::function("clearance", &clearance_of_parts);
   emscripten::function("selfContact", &self_contact_of);
 }

@@ -1,6 +1,7 @@
 // Surfaces of files and of arrays.
 
 #include "part.h"
+#include "fields.h"
 
 #include <algorithm>
 #include <array>
@@ -87,6 +88,12 @@ ControlMesh mesh_of(const val& arrays) {
   return mesh;
 }
 
+std::optional<Scheme> scheme_of(const val& options) {
+  const auto word = option<std::string>(options, "scheme");
+  if (!word || *word == "auto") return {};
+  return named<Scheme>(*word, scheme_count, "scheme", [](Scheme s) { return name_of(s); });
+}
+
 val handed(std::shared_ptr<Part> part) {
   val result = val::object();
   result.set("part", std::move(part));
@@ -106,6 +113,36 @@ val part_of_arrays(const val& arrays, const val& options) {
   return guarded([&] { return handed(std::make_shared<Part>(mesh_of(arrays), "arrays", options)); });
 }
 
+// What is in a mesh, broken ones too, and what is wrong with it.
+val inspected(const val& arrays, const val& options) {
+  return guarded([&] {
+    const ControlMesh mesh = mesh_of(arrays);
+    const std::optional<Scheme> scheme = scheme_of(options);
+    const Scheme taken = scheme ? *scheme : natural_scheme(mesh);
+    val result = object_of(count_elements(mesh, taken));
+    val list = val::array();
+    for (const Defect& defect : defects(mesh)) {
+      val each = object_of(defect);
+      each.set("legal", scheme_answers(taken, defect.kind));
+      list.call<void>("push", each);
+    }
+    result.set("scheme", word(name_of(taken)));
+    result.set("defects", list);
+    result.set("coincidences", object_of(coincidences(mesh)));
+    return result;
+  });
+}
+
+// The bytes of a file of this name.
+val written(const Part& part, const std::string& name) {
+  return guarded([&] {
+    ControlMesh mesh = part.surface().mesh();
+    mesh.tags.scheme = part.surface().scheme();
+    const std::string bytes = format_mesh(mesh, name);
+    return copied(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));  // NOLINT
+  });
+}
+
 }  // namespace
 
 Part::Part(ControlMesh mesh, const std::string& name, const val& options, std::vector<std::string> notes)
@@ -122,9 +159,7 @@ val Part::notes() const {
 Surface Part::made(ControlMesh mesh, const std::string& name, const val& options) {
   SurfaceOptions how;
   how.tight = option<bool>(options, "tight").value_or(false);
-  if (const auto word = option<std::string>(options, "scheme"); word && *word != "auto") {
-    how.scheme = named<Scheme>(*word, scheme_count, "scheme", [](Scheme s) { return name_of(s); });
-  }
+  how.scheme = scheme_of(options);
   if (const auto word = option<std::string>(options, "boundary")) {
     how.boundary = named<BoundaryRule>(*word, 3, "boundary", name_of_boundary);
   }
@@ -155,4 +190,6 @@ EMSCRIPTEN_BINDINGS(part) {
       .property("notes", &Part::notes);
   emscripten::function("read", &read_part);
   emscripten::function("fromArrays", &part_of_arrays);
+  emscripten::function("inspect", &inspected);
+  emscripten::function("write", &written);
 }

@@ -244,11 +244,36 @@ val measured(const Part& part, const val& options) {
   });
 }
 
+// A STEP file of B-spline faces.
+val step_of(const Part& part, const val& options) {
+  return guarded([&] {
+    StepOptions file;
+    file.name = option<std::string>(options, "name").value_or("part");
+    const auto one_of = [&](const char* name, const std::array<const char*, 4>& words) {
+      const std::string word = option<std::string>(options, name).value_or(words[0]);
+      const auto at = std::find(words.begin(), words.end(), word);
+      if (at == words.end())
+        throw InputError(InputProblem::value, std::string(name) + ": there is no '" + word + "'");
+      return static_cast<std::uint8_t>(at - words.begin());
+    };
+    file.unit = static_cast<LengthUnit>(one_of("units", {"mm", "cm", "m", "inch"}));
+    file.ap214 = one_of("protocol", {"ap242", "ap214", "ap214", "ap214"}) > 0;
+    const Brep brep =
+        to_brep(part.surface(),
+                {.error = option<double>(options, "error"), .max_angle = option<double>(options, "maxAngle")},
+                run_of(options));
+    val result = object_of(brep);
+    result.set("text", format_step(brep, file));
+    return result;
+  });
+}
+
 }  // namespace
 }  // namespace snug::web
 
 EMSCRIPTEN_BINDINGS(shapes) {
   using namespace snug::web;  // NOLINT
+  emscripten::function("step", &step_of);
   emscripten::function("cage", &cage_of_part);
   emscripten::function("subdivided", &subdivided_of);
   emscripten::function("sampled", &sampled);

@@ -7,6 +7,7 @@
 #include <emscripten/val.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <new>
 #include <optional>
@@ -53,15 +54,34 @@ std::optional<T> option(const val& options, const char* name) {
   if (!given(options, name)) return {};
   return options[name].as<T>();
 }
-inline Run run_of(const val& options, std::optional<std::uint64_t> usual = {}) {
-  Run run{.threads = 1, .max_splits = usual};
-  const std::optional<double> splits = option<double>(options, "maxSplits");
-  if (!splits) return run;
-  if (!(*splits >= 0 && *splits <= 0x1p53)) {
-    throw InputError(InputProblem::value, "maxSplits: give a whole number that is not negative");
+// One call's: `maxSplits`, and `progress`, which is called with the fraction done and ends the call by false.
+class PageRun : public Run {
+ public:
+  explicit PageRun(const val& options, std::optional<std::uint64_t> usual = {}) {
+    threads = 1;
+    max_splits = usual;
+    if (const std::optional<double> splits = option<double>(options, "maxSplits")) {
+      if (!(*splits >= 0 && *splits <= 0x1p53)) {
+        throw InputError(InputProblem::value, "maxSplits: give a whole number that is not negative");
+      }
+      max_splits = static_cast<std::uint64_t>(*splits);
+    }
+    if (!given(options, "progress")) return;
+    monitor_.stop = &stop_;
+    monitor_.on_progress = [this, call = options["progress"]](double done) {
+      if (call(done).isFalse()) stop_ = true;
+    };
+    monitor = &monitor_;
   }
-  run.max_splits = static_cast<std::uint64_t>(*splits);
-  return run;
+  PageRun(const PageRun&) = delete;
+  PageRun& operator=(const PageRun&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  WorkMonitor monitor_;
+};
+inline PageRun run_of(const val& options, std::optional<std::uint64_t> usual = {}) {
+  return PageRun(options, usual);
 }
 
 inline const char* name_of_problem(InputProblem problem) {
@@ -95,6 +115,8 @@ val guarded(const Work& work) {
     return work();
   } catch (const InputError& error) {
     return fault(name_of_problem(error.problem()), error.what());
+  } catch (const Interrupted&) {
+    return fault("interrupted", "interrupted: progress() returned false");
   } catch (const std::bad_alloc&) {
     return fault("memory", out_of_memory);
   } catch (const std::length_error&) {

@@ -26,7 +26,7 @@ function bytesOf(data) {
 }
 
 // Of a BufferGeometry of three.js; its accessors know of strides and integers that stand for fractions.
-function arraysOf(geometry) {
+export function arraysOf(geometry) {
   const position = geometry?.attributes?.position;
   if (position === undefined) throw new TypeError("fromGeometry: give a BufferGeometry with positions");
   const points = new Float64Array(3 * position.count);
@@ -71,56 +71,38 @@ export default async function Snug({ wasm } = {}) {
     get notes() {
       return Surface.part(this).notes;
     }
-    cage() {
-      return checked(module.cage(Surface.part(this)));
-    }
-    samples(level = 2) {
-      return checked(module.sampled(Surface.part(this), level));
-    }
-    tessellate(options = {}) {
-      return checked(module.tessellate(Surface.part(this), options));
-    }
-    enclosures(options = {}) {
-      return checked(module.enclosures(Surface.part(this), options));
-    }
-    enclosureShapes(options = {}) {
-      return checked(module.enclosureShapes(Surface.part(this), options));
-    }
-    hull(options = {}) {
-      return checked(module.hull(Surface.part(this), options));
-    }
-    envelope(options = {}) {
-      return checked(module.envelope(Surface.part(this), options));
-    }
-    evaluate(at) {
-      return checked(module.evaluate(Surface.part(this), at));
-    }
-    closestPoint(point, options = {}) {
-      return checked(module.closest(Surface.part(this), point, options));
-    }
-    contains(point) {
-      return checked(module.contains(Surface.part(this), point));
-    }
-    ray(origin, direction, options = {}) {
-      return checked(module.ray(Surface.part(this), origin, direction, options));
-    }
-    selfContact(options = {}) {
-      return checked(module.selfContact(Surface.part(this), options));
-    }
-    limitToFaces() {
-      return checked(module.limitToFaces(Surface.part(this)));
-    }
-    measure(options = {}) {
-      return checked(module.measure(Surface.part(this), options));
-    }
-    subdivided(level = 1, limit = false) {
-      return checked(module.subdivided(Surface.part(this), level, limit));
-    }
     delete() {
       this.#part?.delete();
       this.#part = null;
     }
   }
+
+  // Of a surface, or of two and options; what is not given is as usual.
+  const ask = (name, ...usual) => function (...given) {
+    return checked(module[name](Surface.part(this), ...usual.map((each, i) => given[i] ?? each)));
+  };
+  const both = (name) => (a, b, options = {}) => checked(module[name](Surface.part(a), Surface.part(b), options));
+  const many = (name) => (a, b, posesB, options = {}) => checked(module[name](Surface.part(a), Surface.part(b), posesB, options));
+  const given = undefined; // there is no default
+  Object.assign(Surface.prototype, {
+    cage: ask("cage"),
+    samples: ask("sampled", 2),
+    tessellate: ask("tessellate", {}),
+    enclosures: ask("enclosures", {}),
+    enclosureShapes: ask("enclosureShapes", {}),
+    hull: ask("hull", {}),
+    envelope: ask("envelope", {}),
+    evaluate: ask("evaluate", given),
+    closestPoint: ask("closest", given, {}),
+    contains: ask("contains", given),
+    ray: ask("ray", given, given, {}),
+    selfContact: ask("selfContact", {}),
+    limitToFaces: ask("limitToFaces"),
+    measure: ask("measure", {}),
+    subdivided: ask("subdivided", 1, false),
+    write: ask("write", "part.obj"),
+    step: ask("step", {}),
+  });
 
   return {
     Surface,
@@ -128,11 +110,15 @@ export default async function Snug({ wasm } = {}) {
     fromArrays: (arrays, options = {}) => new Surface(checked(module.fromArrays(arrays, options)).part),
     fromGeometry: (geometry, options = {}) =>
       new Surface(checked(module.fromArrays(arraysOf(geometry), { scheme: "flat", weld: 0, ...options })).part),
-    collide: (a, b, options = {}) => checked(module.collide(Surface.part(a), Surface.part(b), options)),
-    distance: (a, b, options = {}) => checked(module.distance(Surface.part(a), Surface.part(b), options)),
-    contacts: (a, b, options = {}) => checked(module.contacts(Surface.part(a), Surface.part(b), options)),
-    penetration: (a, b, options = {}) => checked(module.penetration(Surface.part(a), Surface.part(b), options)),
-    timeOfContact: (a, b, options = {}) => checked(module.timeOfContact(Surface.part(a), Surface.part(b), options)),
+    inspect: (arrays, options = {}) => checked(module.inspect(arrays, options)),
+    collide: both("collide"),
+    distance: both("distance"),
+    collideMany: many("collideMany"),
+    distanceMany: many("distanceMany"),
+    contacts: both("contacts"),
+    penetration: both("penetration"),
+    timeOfContact: both("timeOfContact"),
+    clearance: both("clearance"),
     deviation: (surface, triangles, options = {}) => checked(module.deviation(Surface.part(surface), triangles, options)),
     pose: (steps) => checked(module.pose(steps)),
     textAtMost: (x) => module.textAtMost(x, false),

@@ -29,11 +29,13 @@ double remembered(double x) {
 
 }  // namespace
 
-// Sine and cosine come from the C library, whose last bit is nobody's promise, and answers depend on it through
+// Sine, cosine and arc tangent come from the C library, whose last bit is nobody's promise, and answers depend on it through
 // motions and boxes' axes. Rounded from quadruple precision they are those nearest to the exact ones, as glibc's are but for
 // very few arguments. These definitions come before those of the C library.
 extern "C" double sin(double x) { return remembered<sinl>(x); }
 extern "C" double cos(double x) { return remembered<cosl>(x); }
+// For the angle of a screw, once a piece of a motion.
+extern "C" double atan2(double y, double x) { return static_cast<double>(atan2l(y, x)); }
 
 #if _LIBCPP_VERSION < 15000
 

@@ -295,6 +295,144 @@ test("asks about itself, motions, rays, envelopes and deviations as the native l
   assert.ok(pin.closestPoint(there.point, { absolute: 1e-9 }).distance[0] <= 1e-9 && there.normal.length === 3);
 });
 
+// Members of one name, in the spelling of each door: `own` has at least so many of the command's.
+function same_members(own, native, least, what) {
+  let compared = 0;
+  const camel = (name) => name.replace(/_([a-z])/g, (_, letter) => letter.toUpperCase());
+  // Points stand in flat arrays here.
+  const numbers = (list) => (list.flat().every((x) => x === null || typeof x === "number") ? list.flat() : list);
+  const plain = (x) => {
+    if (x === Infinity || x === undefined) return null;
+    if (ArrayBuffer.isView(x)) return [...x];
+    if (Array.isArray(x)) return numbers(x.map(plain));
+    if (x === null || typeof x !== "object") return x;
+    return Object.fromEntries(Object.entries(x).filter(([key]) => !key.endsWith("At") && key !== "contacts" && !/^(patches|a|b|part_[ab])$/.test(key)).map(([key, each]) => [key, plain(each)]));
+  };
+  const spelled = (x) => Array.isArray(x) ? numbers(x.map(spelled)) : x === null || typeof x !== "object" ? x
+    : Object.fromEntries(Object.entries(x).filter(([key]) => !key.endsWith("_at") && key !== "contacts" && !/^(patches|a|b|part_[ab])$/.test(key)).map(([key, each]) => [camel(key), spelled(each)]));
+  for (const [name, value] of Object.entries(native)) {
+    if (!(camel(name) in own) || name.endsWith("_at")) continue;
+    const ought = name === "contained" ? (value === null ? null : "ab".indexOf(value)) : spelled(value);
+    assert.deepStrictEqual(plain(own[camel(name)]), ought, `${what}: ${name}`);
+    ++compared;
+  }
+  assert.ok(compared >= least, `${what}: ${compared} members`);
+}
+const few = Number(process.env.SNUG_QUESTIONS ?? 3);
+
+test("gives the digits of the native library to questions of every kind", () => {
+  for (const [name_a, name_b, scheme] of [["bracket.obj", "pin.obj", "auto"], ["star.obj", "ring.obj", "auto"], ["bracket.obj", "pin.obj", "doo-sabin"], ["star.obj", "ring.obj", "flat"]]) {
+    const [a, b] = [model(name_a, { scheme }), model(name_b, { scheme })], files = [join(models, name_a), join(models, name_b), "--scheme", scheme];
+    const list = poses(Math.max(a.size, b.size), few + 2), size = Math.max(a.size, b.size), path = join(scratch, "path.txt");
+    for (let i = 0; i < few; ++i) {
+      const what = `${name_a} ${name_b} ${scheme}, ${i}`, place = ["--place-b", list[i].join(" ")], motionB = list.slice(i, i + 3);
+      same_members(snug.contacts(a, b, { poseB: list[i] }), ask("collide", ...files, ...place, "--all"), 5, what);
+      writeFileSync(path, motionB.map((pose) => pose.join(" ")).join("\n") + "\n");
+      let moving;
+      try {
+        moving = snug.timeOfContact(a, b, { motionB, margin: 0.01 * i * size });
+      } catch (error) {
+        assert.equal(error.problem, "pose", error.message); // half a turn
+        continue;
+      }
+      const margin = ask("time-of-contact", ...files, "--path-b", path, "--margin", String(0.01 * i * size));
+      same_members(moving, margin, 7, what);
+      same_members(snug.clearance(a, b, { motionB, absolute: 0.02 * size, relative: 0.2 }), ask("clearance", ...files, "--path-b", path, "--absolute", String(0.02 * size), "--relative", "0.2"), 8, what);
+    }
+  }
+  for (const [name, scheme] of [["bracket.obj", "auto"], ["star.obj", "auto"], ["pin.obj", "bilinear"], ["bracket.obj", "midedge"], ["ring.obj", "flat"]]) {
+    const surface = model(name, { scheme }), native = (question, ...words) => ask(question, join(models, name), "--scheme", scheme, ...words);
+    const text = (rows) => rows.map((row) => row.join(" ")).join("\n") + "\n", file = join(scratch, "rows.txt");
+    const points = Array.from({ length: 40 * few }, () => [0, 1, 2].map(() => centred(3 * surface.size)));
+    writeFileSync(file, text(points));
+    const near = points.map((point) => surface.closestPoint(point));
+    native("closest", "--points", file).results.forEach((one, i) => same_members(near[i], one, 4, `${name}: point ${i}`));
+    const towards = near.map(({ point }, i) => point.map((x, k) => x - points[i][k]));
+    writeFileSync(file, text(points.map((point, i) => [...point, ...towards[i]])));
+    native("ray", "--rays", file, "--all").results.forEach((one, i) => {
+      const own = surface.ray(points[i], towards[i], { query: "all" });
+      assert.equal(own.outcome, one.outcome);
+      assert.equal(own.hits.length, one.hits.length);
+      // The command has the normal of the place, with a bound.
+      one.hits.forEach(({ normal, ...hit }, k) => same_members(own.hits[k], hit, 5, `${name}: ray ${i}`));
+    });
+    same_members(surface.measure(), native("measure"), 6, name);
+    same_members(surface.selfContact(), native("self-contact"), 4, name);
+  }
+});
+
+test("answers about many poses at once as one by one, and in time", () => {
+  const [bracket, pin] = [model("bracket.obj"), model("pin.obj")], list = poses(Math.max(bracket.size, pin.size), 1000), posesB = Float64Array.from(list.flat());
+  const words = ["separated", "within", "intersecting", "undecided"];
+  const start = performance.now(), found = snug.collideMany(bracket, pin, posesB), seconds = (performance.now() - start) / 1000;
+  console.log(`1,000 collide queries in ${(1000 * seconds).toFixed(1)} ms`);
+  const apart = snug.distanceMany(bracket, pin, posesB);
+  list.slice(0, 100).forEach((poseB, i) => {
+    const one = snug.collide(bracket, pin, { poseB });
+    assert.deepStrictEqual([words[found.verdicts[i]], [found.lower[i], found.upper[i]]], [one.verdict, one.distance]);
+    assert.deepStrictEqual([apart.lower[i], apart.upper[i]], snug.distance(bracket, pin, { poseB }).distance);
+  });
+  assert.ok(seconds < 0.5);
+  assert.throws(() => snug.collideMany(bracket, pin, [1, 2, 3]), { problem: "pose" });
+});
+
+test("inspects and writes meshes", () => {
+  const bow = { points: [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0], triangles: [0, 1, 2, 1, 0, 3, 0, 1, 4] };
+  const seen = snug.inspect(bow, { scheme: "flat" });
+  assert.ok(seen.manySidedEdges === 1 && seen.scheme === "flat" && seen.defects.some(({ kind }) => kind === "edge-of-many-faces") && seen.coincidences.vertices > 0);
+  for (const name of ["a.obj", "a.ply", "a.usda"]) {
+    const bracket = model("bracket.obj"), again = snug.read(name, bracket.write(name));
+    assert.deepStrictEqual(again.cage(), bracket.cage());
+    assert.equal(again.scheme, bracket.scheme);
+  }
+  assert.throws(() => model("bracket.obj").write("a.fbx"), { problem: "unreadable" });
+});
+
+test("writes STEP files as the native library does", () => {
+  const file = join(scratch, "part.step"), bracket = model("bracket.obj");
+  const native = ask("convert", join(models, "bracket.obj"), "-o", file, "--error", String(1e-3 * bracket.size));
+  const own = bracket.step({ error: 1e-3 * bracket.size, name: "bracket" });
+  assert.deepStrictEqual([own.errorBound, own.gapBound, own.faces, own.spans], [native.error_bound, native.gap_bound, native.faces, native.spans]);
+  const data = (text) => text.slice(text.indexOf("DATA;"));
+  assert.equal(data(own.text).length, data(readFileSync(file, "utf8")).length);
+  assert.throws(() => bracket.step({ units: "ell" }), { problem: "value" });
+});
+
+test("tells progress, and ends where that says so", () => {
+  const bust = model("bust.obj"), done = [];
+  bust.tessellate({ error: 0.001 * bust.size, progress: (share) => void done.push(share) });
+  assert.ok(done.length > 0 && done.every((share) => share >= 0 && share <= 1));
+  assert.throws(() => bust.tessellate({ error: 0.0001 * bust.size, progress: () => false }), { name: "SnugError", problem: "interrupted" });
+});
+
+test("works in a worker, with promises, progress and an end on request", async () => {
+  const { default: SnugWorker } = await import(pathToFileURL(join(folder, "worker.js")));
+  const later = SnugWorker(), file = readFileSync(join(models, "bust.obj"));
+  const bust = await later.read("bust.obj", file), pin = await later.read("pin.obj", readFileSync(join(models, "pin.obj")));
+  const own = snug.read("bust.obj", file);
+  assert.deepEqual([bust.size, bust.scheme, bust.boundary, bust.notes], [own.size, own.scheme, own.boundary, own.notes]);
+  const done = [];
+  const [drawn, hit] = await Promise.all([bust.tessellate({ error: 0.01 * bust.size, progress: (share) => done.push(share) }), later.collide(bust, pin, { measure: true })]);
+  assert.deepStrictEqual(drawn, own.tessellate({ error: 0.01 * own.size }));
+  assert.deepStrictEqual(hit, snug.collide(own, model("pin.obj"), { measure: true }));
+  assert.ok(done.length > 0);
+  await assert.rejects(bust.tessellate({ error: -1 }), (error) => error instanceof SnugError && error.problem === "value");
+  await assert.rejects(later.read("a.obj", "v 0"), (error) => error instanceof SnugError && error.problem === "unreadable");
+  // What is long is ended at once; surfaces and what else was asked live on.
+  const start = performance.now(), signal = AbortSignal.timeout(300);
+  const ended = assert.rejects(later.deviation(bust, drawn, { absolute: 1e-9 * bust.size, signal }), { name: "TimeoutError" });
+  const measured = bust.measure();
+  await ended;
+  assert.ok(performance.now() - start < 3000);
+  assert.deepStrictEqual(await measured, own.measure());
+  assert.deepStrictEqual(await later.distance(bust, pin), snug.distance(own, model("pin.obj")));
+  await assert.rejects(later.distance(bust, pin, { signal: AbortSignal.abort() }), { name: "AbortError" });
+  await bust.delete();
+  await assert.rejects(bust.measure());
+  await later.close();
+  await assert.rejects(later.pose({}), /closed/);
+});
+
 test("lists contacts as the native library does, member by member", () => {
   const [bracket, pin] = [model("bracket.obj"), model("pin.obj")], poseB = snug.pose({ move: [0, 0, 0.5] });
   const native = ask("collide", join(models, "bracket.obj"), join(models, "pin.obj"), "--place-b", poseB.join(" "), "--all");

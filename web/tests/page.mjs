@@ -424,3 +424,50 @@ test("a scene is shown with its placed parts, and any two of them are asked abou
   await close();
 });
 
+
+// A page of somebody else's: three and the package from npm, put together by esbuild, and nothing but arrays between them.
+test("three draws a tessellation of arrays", { skip }, async () => {
+  const { build } = await import("esbuild");
+  const package_folder = process.env.SNUG_PACKAGE ?? join(root, "build/web/package");
+  const entry = `
+    import Snug from ${JSON.stringify(join(package_folder, "snug.js"))};
+    import * as three from "three";
+    const snug = await Snug({ wasm: Uint8Array.from(atob(document.getElementById("wasm").textContent), (c) => c.charCodeAt(0)) });
+    const points = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((k) => [k & 1, (k >> 1) & 1, k >> 2].map((x) => 2 * x - 1));
+    const corners = [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5];
+    const surface = snug.fromArrays({ points, offsets: [0, 4, 8, 12, 16, 20, 24], corners }, { scheme: "catmark" });
+    const { positions, normals, triangles } = surface.tessellate({ error: 0.01 });
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(Float32Array.from(positions), 3));
+    geometry.setAttribute("normal", new three.BufferAttribute(Float32Array.from(normals), 3));
+    geometry.setIndex(new three.BufferAttribute(triangles, 1));
+    const scene = new three.Scene().add(new three.Mesh(geometry, new three.MeshNormalMaterial()));
+    const camera = new three.PerspectiveCamera(40, 1, 0.1, 100);
+    camera.position.set(0, 0, 4);
+    const renderer = new three.WebGLRenderer({ preserveDrawingBuffer: true });
+    renderer.setSize(300, 300);
+    document.body.append(renderer.domElement);
+    renderer.render(scene, camera);
+    const gl = renderer.getContext(), pixels = new Uint8Array(4 * 300 * 300);
+    gl.readPixels(0, 0, 300, 300, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const again = snug.fromGeometry(geometry);
+    window.drawn = { triangles: triangles.length / 3, pixels: [...pixels], volume: [surface.measure().volume, again.measure().volume] };`;
+  const made = await build({ stdin: { contents: entry, resolveDir: join(root, "web") }, bundle: true, write: false, format: "esm", target: "es2022", external: ["node:fs/promises"], logLevel: "error" });
+  const file = join(scratch, "three.html"), inside = (text) => text.replace(/<\/(script)/gi, "<\\/$1");
+  writeFileSync(file, `<body><script type="text/plain" id="wasm">${readFileSync(join(package_folder, "snug.wasm")).toString("base64")}</script><script type="module">${inside(made.outputFiles[0].text)}</script>`);
+  const page = await browser.newPage();
+  const faults = [];
+  page.on("pageerror", (error) => faults.push(error.stack));
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForFunction(() => window.drawn, null, { timeout: 60_000 }).catch((error) => assert.deepEqual(faults, [], error.message));
+  const { triangles, pixels, volume } = await page.evaluate(() => window.drawn);
+  const lit = (x, y) => pixels.slice(4 * (300 * y + x), 4 * (300 * y + x) + 3);
+  assert.ok(triangles > 100);
+  // In the middle its normal points at us; in the corners there is nothing.
+  const [red, green, blue] = lit(150, 150);
+  assert.ok(Math.abs(red - 128) < 12 && Math.abs(green - 128) < 12 && blue > 240, `${lit(150, 150)}`);
+  for (const at of [[2, 2], [297, 2], [2, 297], [297, 297]]) assert.deepEqual(lit(...at), [0, 0, 0]);
+  assert.ok(volume[1][1] < volume[0][1] && volume[1][0] > 0.95 * volume[0][0], `${volume}`);
+  await page.screenshot({ path: join(pictures, "three.png") });
+  await page.close();
+});

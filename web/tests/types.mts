@@ -1,5 +1,6 @@
 // Compiles if snug.d.ts has the types that people use; package.mjs calls what is declared.
 
+import SnugWorker, { type Surface as SurfaceInWorker } from "../package/worker.js";
 import Snug, { SnugError, type Collision, type Interval, type Surface } from "../package/snug.js";
 
 const snug = await Snug();
@@ -15,8 +16,17 @@ const faces: Uint32Array | undefined = snug.contacts(a, b, { within: 0.1 }).regi
 const centroid: Interval | undefined = a.measure().centroid?.[2];
 const inside: boolean | null = a.contains([0, 0, 0]);
 const positions: Float32Array = a.samples(2).positions;
+const room: Interval = snug.clearance(a, b, { motionB: [snug.pose({ move: [0, 0, 1] }), snug.pose({})], progress: (done) => done < 1 }).spans[0].distance;
+const verdicts: Uint8Array = snug.collideMany(a, b, new Float64Array(12), { tolerance: 0.1 }).verdicts;
+const bytes: Uint8Array = a.write("a.ply");
+const later = SnugWorker();
+const remote: SurfaceInWorker = await later.read("a.obj", "v 0 0 0");
+const drawn: Float64Array = (await remote.tessellate({ error: 0.1, signal: AbortSignal.timeout(1), progress: () => {} })).positions;
+const verdict: string = (await later.collide(remote, remote, { signal: new AbortController().signal })).verdict;
+// @ts-expect-error: a surface of a worker is another one
+snug.collide(remote, b);
 // @ts-expect-error: there is no such verdict
 const wrong: boolean = hit.verdict === "touching";
 // @ts-expect-error: nor such a scheme
 snug.read("c.obj", "", { scheme: "butterfly" });
-export { centroid, faces, first, inside, when, gap, normal, positions, wrong, SnugError };
+export { bytes, drawn, room, verdict, verdicts, centroid, faces, first, inside, when, gap, normal, positions, wrong, SnugError };

@@ -1,0 +1,114 @@
+// The same functions in a worker, each with a promise: worker.d.ts.
+
+import { SnugError, arraysOf } from "./snug.js";
+
+const isNode = typeof process !== "undefined" && process.versions?.node !== undefined;
+
+/** Starts a worker. Its functions are those of Snug() and of its surfaces. */
+export default function SnugWorker(options = {}) {
+  let thread = null, next = 0, closed = false;
+  const waiting = new Map(); // by number: what is asked, and its promise
+  const kept = new Map(); // by number: how each surface was made, for a worker that takes the place of another
+
+  const broken = (error) => {
+    for (const asked of waiting.values()) asked.reject(error);
+    waiting.clear();
+  };
+  async function start() {
+    const url = new URL("./thread.js", import.meta.url);
+    const made = isNode ? new (await import("node:worker_threads")).Worker(url) : new Worker(url, { type: "module" });
+    const hear = (data) => {
+      const asked = waiting.get(data.id);
+      if (data.done !== undefined) return asked?.progress?.(data.done);
+      waiting.delete(data.id);
+      if (asked === undefined) return;
+      if (data.fault === undefined) return asked.resolve(data.result);
+      const { name, message, problem } = data.fault;
+      asked.reject(name === "SnugError" ? new SnugError(problem, message) : name === "TypeError" ? new TypeError(message) : new Error(message));
+    };
+    if (isNode) made.on("message", hear).on("error", broken);
+    else Object.assign(made, { onmessage: ({ data }) => hear(data), onerror: ({ message }) => broken(new Error(message)) });
+    made.postMessage({ start: options });
+    for (const [id, message] of kept) if (!waiting.has(id)) made.postMessage(message);
+    for (const asked of waiting.values()) post(asked, made);
+    return made;
+  }
+  // Once to each worker.
+  function post(asked, made) {
+    if (asked.by !== made) made.postMessage(asked.message);
+    asked.by = made;
+  }
+  // A call that is under way cannot be stopped from outside: its worker ends, and another one does what else was asked.
+  function restart() {
+    const before = thread;
+    thread = start();
+    before.then((made) => made.terminate());
+  }
+
+  async function ask(message, { signal, progress, keep = false } = {}) {
+    if (closed) throw new Error("this worker was closed");
+    signal?.throwIfAborted();
+    message.id = ++next;
+    message.watch = progress !== undefined;
+    const answer = new Promise((resolve, reject) => waiting.set(message.id, { message, resolve, reject, progress }));
+    if (keep) kept.set(message.id, message);
+    thread ??= start();
+    thread.then((made) => waiting.has(message.id) && post(waiting.get(message.id), made));
+    const abort = () => {
+      if (!waiting.has(message.id)) return;
+      waiting.get(message.id).reject(signal.reason);
+      waiting.delete(message.id);
+      kept.delete(message.id);
+      restart();
+    };
+    signal?.addEventListener("abort", abort);
+    try {
+      return await answer;
+    } catch (error) {
+      kept.delete(message.id);
+      throw error;
+    } finally {
+      signal?.removeEventListener("abort", abort);
+    }
+  }
+  // What only this side knows leaves the options; surfaces become their numbers.
+  function sent(target, name, args, keep) {
+    const last = args.at(-1);
+    const own = last !== null && typeof last === "object" && Object.getPrototypeOf(last) === Object.prototype;
+    const { signal, progress, ...rest } = own ? last : {};
+    const all = own ? [...args.slice(0, -1), rest] : args;
+    return ask({ target, name, args: all.map((each) => (each instanceof Surface ? { surface: each.number } : each)) }, { signal, progress, keep });
+  }
+  class Surface {
+    constructor(number, facts) {
+      this.number = number;
+      Object.assign(this, facts);
+    }
+    delete() {
+      kept.delete(this.number);
+      return sent(this.number, "delete", []);
+    }
+  }
+  const methods = ["cage", "samples", "tessellate", "enclosures", "enclosureShapes", "hull", "envelope", "evaluate", "closestPoint", "contains",
+    "ray", "selfContact", "limitToFaces", "measure", "subdivided", "write", "step"];
+  for (const name of methods) Surface.prototype[name] = function (...args) { return sent(this.number, name, args); };
+  const makes = (name) => async (...args) => {
+    const made = await sent(null, name, args, true);
+    return new Surface(made.surface, made.facts);
+  };
+  const asks = (name) => (...args) => sent(null, name, args);
+  const names = ["inspect", "collide", "distance", "collideMany", "distanceMany", "contacts", "penetration", "timeOfContact", "clearance",
+    "deviation", "pose", "textAtMost", "textAtLeast"];
+  return {
+    Surface,
+    read: makes("read"),
+    fromArrays: makes("fromArrays"),
+    fromGeometry: (geometry, how = {}) => makes("fromArrays")(arraysOf(geometry), { scheme: "flat", weld: 0, ...how }),
+    ...Object.fromEntries(names.map((name) => [name, asks(name)])),
+    async close() {
+      closed = true;
+      await (await thread)?.terminate();
+      broken(new Error("this worker was closed"));
+    },
+  };
+}
