@@ -14,6 +14,8 @@ import sysconfig
 import tarfile
 import zipfile
 
+NAME = "snug-surfaces"  # PyPI has another package named snug
+FILE_NAME = "snug_surfaces"
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "python/snug"
 PAGE = ROOT / "build/web/snug.html"  # which make page builds
@@ -38,7 +40,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
     """Without it pip would build once more, to read them from a wheel."""
-    folder = pathlib.Path(metadata_directory) / f"snug-{version()}.dist-info"
+    folder = pathlib.Path(metadata_directory) / f"{FILE_NAME}-{version()}.dist-info"
     folder.mkdir()
     (folder / "METADATA").write_text(_metadata(), encoding="utf-8")
     return folder.name
@@ -54,7 +56,7 @@ def build_editable(wheel_directory, config_settings=None, metadata_directory=Non
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    base = f"snug-{version()}"
+    base = f"{FILE_NAME}-{version()}"
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
     with tarfile.open(pathlib.Path(sdist_directory) / f"{base}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as archive:
         for name in filter(None, listed.split("\0")):
@@ -81,14 +83,14 @@ def _built():
 def _metadata():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     return (
-        f"Metadata-Version: 2.1\nName: snug\nVersion: {version()}\n"
+        f"Metadata-Version: 2.1\nName: {NAME}\nVersion: {version()}\n"
         "Summary: Proved answers about the limit surfaces of subdivision meshes\nLicense: Apache-2.0\n"
         f"Requires-Python: >=3.9\nRequires-Dist: numpy\nDescription-Content-Type: text/markdown\n\n{readme}"
     )
 
 
 def _zipped(directory, files):
-    facts = f"snug-{version()}.dist-info"
+    facts = f"{FILE_NAME}-{version()}.dist-info"
     files = {
         **files,
         f"{facts}/METADATA": _metadata().encode(),
@@ -97,7 +99,7 @@ def _zipped(directory, files):
     }
     record = "".join(f"{name},sha256={_hash(content)},{len(content)}\n" for name, content in files.items())
     files[f"{facts}/RECORD"] = f"{record}{facts}/RECORD,,\n".encode()
-    wheel = f"snug-{version()}-{TAG}-{TAG}-{PLATFORM}.whl"
+    wheel = f"{FILE_NAME}-{version()}-{TAG}-{TAG}-{PLATFORM}.whl"
     with zipfile.ZipFile(pathlib.Path(directory) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             # A date of its own: the same files make the same wheel.

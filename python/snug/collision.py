@@ -10,17 +10,20 @@ triangles is what these triangles are, as in trimesh; scheme= and sharp= make a 
   the interval. Of closed surfaces that touch it is negative: a translation of that length parts them, proved
   (penetration(), some 50 ms for each such pair); depth=False, or a surface that is not closed, makes it 0;
 - one contact is given for each pair: the witnesses' middle, not all contact points.
+
+Objects may stand in groups, and pairs of objects or groups may be allowed to touch: allow(). Those are never asked about.
 """
 
 from __future__ import annotations
 
+import logging
 from typing import Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Set, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ._errors import UndecidedError
-from ._snug import Collision, Distance, Surface, _near_pairs, _pose, collide, distance, penetration
+from ._snug import Collision, Distance, Penetration, Surface, _near_pairs, _pose, collide, distance, penetration
 from .proximity import Sharp, as_surface
 
 Floats = npt.NDArray[np.float64]
@@ -28,6 +31,7 @@ Floats = npt.NDArray[np.float64]
 __all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
 
 _EXTERNAL = "__external"
+_log = logging.getLogger("snug")
 
 
 class _Placed(NamedTuple):
@@ -61,16 +65,20 @@ class _Pairs(NamedTuple):
 
     objects: List[_Placed]
     others: Optional[List[_Placed]] = None
+    allowed: Callable[[str, str], bool] = lambda a, b: False
 
     def nearer_than(self, reach: float) -> Iterator[_Pair]:
-        """The pairs that boxes around them do not keep farther apart."""
+        """The pairs that boxes around them do not keep farther apart, and that are not allowed to touch."""
         parts = self.objects + (self.others or [])
         if not parts:
             return
         first = None if self.others is None else len(self.objects)
         poses = np.array([each.pose for each in parts])
-        for i, j, gap in zip(*_near_pairs([each.surface for each in parts], poses, first, reach)):
-            yield _Pair(parts[i], parts[j], float(gap))
+        near = _near_pairs([each.surface for each in parts], poses, first, reach)
+        _log.debug("%d of the pairs of %d objects are within %g of each other's boxes", len(near[0]), len(parts), reach)
+        for i, j, gap in zip(*near):
+            if not self.allowed(parts[i].name, parts[j].name):
+                yield _Pair(parts[i], parts[j], float(gap))
 
     def largest_size(self) -> float:
         return max((each.surface.size for each in self.objects + (self.others or [])), default=0.0)
@@ -83,6 +91,7 @@ class ContactData:
         self.names: FrozenSet[str] = frozenset((a.name, b.name))
         self.collision = found  #: the proved answer
         self._objects = (a, b)
+        self._penetration: Optional[Penetration] = None
 
     @property
     def point(self) -> Floats:
@@ -92,8 +101,13 @@ class ContactData:
 
     @property
     def normal(self) -> Floats:
-        """The normal of the first object at the contact, (3,), world coordinates; NaN where it has none."""
-        a = self._objects[0]
+        """Along the translation of the second object that takes `depth` away, (3,), world coordinates. Of surfaces that are not
+        closed, and of contacts without depth, the normal of the first one at the contact; NaN where it has none."""
+        a, b = self._objects
+        if a.surface.is_closed and b.surface.is_closed:
+            way = np.asarray(self._depth().translation)
+            if way.any():
+                return way / np.linalg.norm(way)
         face = int(self.collision.faces[0])
         if face < 0:
             return np.full(3, np.nan)
@@ -104,8 +118,13 @@ class ContactData:
     @property
     def depth(self) -> float:
         """How deeply two solids penetrate: the upper end of penetration(), found when asked for. Closed surfaces only."""
-        a, b = self._objects
-        return float(penetration(a.surface, b.surface, pose_a=a.pose, pose_b=b.pose).upper)
+        return float(self._depth().upper)
+
+    def _depth(self) -> Penetration:
+        if self._penetration is None:
+            a, b = self._objects
+            self._penetration = penetration(a.surface, b.surface, pose_a=a.pose, pose_b=b.pose)
+        return self._penetration
 
     def index(self, name: str) -> int:
         """The face of the object `name` at the contact; -1 if it was located on the other one only."""
@@ -172,17 +191,35 @@ class CollisionManager:
         self._scheme = scheme
         self._sharp = sharp
         self._objects: Dict[str, _Placed] = {}
+        self._groups: Dict[str, str] = {}
+        self._allowed: Set[FrozenSet[str]] = set()
 
-    def add_object(self, name: str, mesh: Any, transform: Optional[npt.ArrayLike] = None) -> Surface:
-        """Adds a surface, or a mesh that snug.Surface() takes, in place of an object of that name. Returns the surface."""
+    def add_object(
+        self, name: str, mesh: Any, transform: Optional[npt.ArrayLike] = None, group: Optional[str] = None
+    ) -> Surface:
+        """Adds a surface, or a mesh that snug.Surface() takes, in place of an object of that name. Returns the surface.
+
+        group: one that the object stands in; objects of one group are asked about like others, until allow(group, group).
+        """
         surface = self._surface(mesh)
         self._objects[name] = self._place(name, surface, transform)
+        self._groups[name] = name if group is None else group
         return surface
+
+    def allow(self, a: str, b: str, allowed: bool = True) -> None:
+        """May two objects, an object and a group, or two groups touch? By default none may. A name that is not there yet counts
+        once it is."""
+        (self._allowed.add if allowed else self._allowed.discard)(frozenset((a, b)))
+
+    def is_allowed(self, a: str, b: str) -> bool:
+        """May two objects touch, by their names or groups?"""
+        both = [(name, self._groups.get(name, name)) for name in (a, b)]
+        return any(frozenset((x, y)) in self._allowed for x in both[0] for y in both[1])
 
     def remove_object(self, name: str) -> None:
         """Removes an object. Raises ValueError if there is none of that name."""
         self._require(name)
-        del self._objects[name]
+        del self._objects[name], self._groups[name]
 
     def set_transform(self, name: str, transform: npt.ArrayLike) -> None:
         """Places an object anew. Raises ValueError if there is none of that name."""
@@ -206,7 +243,7 @@ class CollisionManager:
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Do any two objects touch? As in_collision_single(), with pairs of names in alphabetical order."""
-        found = list(self._contacts(_Pairs(self._all()), return_names or return_data))
+        found = list(self._contacts(_Pairs(self._all(), None, self.is_allowed), return_names or return_data))
         names = {(min(a.name, b.name), max(a.name, b.name)) for a, b, _ in found}
         return self._answer(found, names, return_names, return_data)
 
@@ -230,10 +267,10 @@ class CollisionManager:
     ) -> Any:
         """How far any two objects are apart, or the object `name` from any other, at least; with names as in
         in_collision_internal()."""
-        pairs = _Pairs(self._all())
+        pairs = _Pairs(self._all(), None, self.is_allowed)
         if name is not None:
             one = self._require(name)
-            pairs = _Pairs([one], [each for each in self._all() if each is not one])
+            pairs = _Pairs([one], [each for each in self._all() if each is not one], self.is_allowed)
         return self._nearest(pairs, return_names, return_data, lambda a, b: (min(a, b), max(a, b)))
 
     def min_distance_other(

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -18,10 +19,18 @@ std::string text_of(double x, int digits) {
 }
 
 std::string text_of(const Interval& interval) {
+  // Rounded outward: what is shown contains the interval.
+  const auto outward = [](double x, int digits, double way) {
+    std::string text = text_of(x, digits);
+    const double shown = std::strtod(text.c_str(), nullptr);
+    if (digits < 17 && (shown - x) * way < 0)
+      text = text_of(shown + way * std::pow(10.0, std::floor(std::log10(std::fabs(x))) + 1 - digits), digits);
+    return text;
+  };
   std::string lower, upper;
   for (int digits = 4; digits <= 17; ++digits) {
-    lower = text_of(interval.lower, digits);
-    upper = text_of(interval.upper, digits);
+    lower = outward(interval.lower, digits, -1);
+    upper = outward(interval.upper, digits, 1);
     if (lower != upper || interval.lower == interval.upper) break;
   }
   return lower + " to " + upper;
@@ -57,5 +66,6 @@ PYBIND11_MODULE(_snug, module) {
   add_pair_queries(module);
   add_motions(module);
   add_signatures(module);
+  quicken_collide(module);
   zero_what_is_not_made(module);
 }

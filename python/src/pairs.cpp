@@ -243,7 +243,83 @@ constexpr const char* pose_doc =
     "rigid=\"nearest\": what is not rigid within 1e-9 is replaced by the nearest rotation.\n"
     "progress: called with the fraction done; what it raises ends the work.\n\n";
 
+// Most calls of collide() name a few plain arguments: these are taken as they come, without what pybind11 does to sort out fifteen.
+// All others, and what goes wrong, are for the function that it made.
+class QuickCollide {
+ public:
+  static PyObject* call(PyObject* slow, PyObject* const* args, Py_ssize_t count, PyObject* names) {
+    try {
+      if (PyObject* const answer = quick(args, count, names)) return answer;
+    } catch (py::error_already_set& error) {
+      error.restore();
+      return nullptr;
+    } catch (...) {  // the other one will say it
+    }
+    return PyObject_Vectorcall(slow, args, static_cast<std::size_t>(count), names);
+  }
+  // Stands in the place of the function of this name.
+  static void put_before(py::module_& module) {
+    surface_ = py::type::of<PySurface>().ptr();
+    static PyMethodDef definition{"collide", nullptr, METH_FASTCALL | METH_KEYWORDS, nullptr};
+    const py::object slow = module.attr("collide");
+    using Any = void (*)();
+    definition.ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<Any>(call));     // NOLINT
+    definition.ml_doc = reinterpret_cast<PyCFunctionObject*>(slow.ptr())->m_ml->ml_doc;  // NOLINT
+    module.attr("collide") = py::reinterpret_steal<py::object>(
+        PyCFunction_NewEx(&definition, slow.ptr(), module.attr("__name__").ptr()));
+  }
+
+ private:
+  static const PySurface* surface_of(PyObject* object) {
+    if (reinterpret_cast<PyObject*>(Py_TYPE(object)) != surface_) return nullptr;  // NOLINT
+    auto* const instance = reinterpret_cast<py::detail::instance*>(object);        // NOLINT
+    return instance->get_value_and_holder().value_ptr<PySurface>();
+  }
+  static PyObject* quick(PyObject* const* args, Py_ssize_t count, PyObject* names) {
+    if (count != 2) return nullptr;
+    const PySurface *const a = surface_of(args[0]), *const b = surface_of(args[1]);
+    if (a == nullptr || b == nullptr) return nullptr;
+    CollideOptions options;
+    options.tolerance = 0.1 / 100 * larger_size(*a, *b);  // as length_of() has "0.1%"
+    std::array<PyObject*, 2> poses{Py_None, Py_None};
+    for (Py_ssize_t i = 0; names != nullptr && i < PyTuple_GET_SIZE(names); ++i) {
+      PyObject *const name = PyTuple_GET_ITEM(names, i), *const value = args[2 + i];
+      const auto is = [&](const char* word) { return PyUnicode_CompareWithASCIIString(name, word) == 0; };
+      const bool truth = value == Py_True || value == Py_False;
+      if (is("pose_b")) {
+        poses[1] = value;
+      } else if (is("pose_a")) {
+        poses[0] = value;
+      } else if (truth && is("measure")) {
+        options.measure = value == Py_True;
+      } else if (truth && is("prove_contact")) {
+        options.prove_contact = value == Py_True;
+      } else if (truth && is("solid")) {
+        options.solid = value == Py_True;
+      } else if (is("witness")) {
+        options.witness = witness_kind(py::reinterpret_borrow<py::object>(value));
+      } else {
+        return nullptr;
+      }
+    }
+    const py::none none;
+    const Poses pose_a(py::reinterpret_borrow<py::object>(poses[0]), "pose_a", none),
+        pose_b(py::reinterpret_borrow<py::object>(poses[1]), "pose_b", none);
+    if (pose_a.count() || pose_b.count()) return nullptr;
+    const PlacedSurface placed_a(a->surface(), pose_a.at(0)), placed_b(b->surface(), pose_b.at(0));
+    Call call;
+    return py::cast(call.run([&](const Run& run) {
+             return Answers<Collision>(collide(placed_a, placed_b, options, run));
+           }))
+        .release()
+        .ptr();
+  }
+  static inline PyObject* surface_ = nullptr;
+};
+
 }  // namespace
+
+void quicken_collide(py::module_& module) { QuickCollide::put_before(module); }
 
 void add_pair_queries(py::module_& module) {
   add_collision(module);

@@ -213,6 +213,16 @@ std::string in_words_of_python(std::string line) {
   return line;
 }
 
+// For logging, at the level DEBUG.
+void log(const std::string& name, const PySurface& made) {
+  const Surface surface = made.surface();
+  py::module_::import("logging").attr("getLogger")("snug").attr("debug")(
+      "%s: %d faces, %s",
+      py::reinterpret_steal<py::object>(
+          PyUnicode_DecodeFSDefaultAndSize(name.data(), static_cast<Py_ssize_t>(name.size()))),
+      surface.mesh().face_count(), name_of(surface.scheme()));
+}
+
 // `name`: of the file, if there is one.
 std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::optional<double> distance,
                                 std::optional<double> angle, const Run& how, const py::object& progress,
@@ -220,7 +230,7 @@ std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::o
   if (options.boundary) mesh.tags.boundary = options.boundary;  // so that write() keeps it
   const std::size_t before = notes.size();
   Call call(progress, how);
-  return call.run([&](const Run& run) {
+  std::unique_ptr<PySurface> surface = call.run([&](const Run& run) {
     notes.resize(before);
     options.notes = [&](const std::string& line) {
       notes.push_back((name.empty() ? "" : name + ": ") + in_words_of_python(line));
@@ -231,6 +241,8 @@ std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::o
     if (options.scheme) taken.tags.scheme = options.scheme;
     return std::make_unique<PySurface>(std::move(taken), options, run);
   });
+  log(name.empty() ? "arrays" : name, *surface);
+  return surface;
 }
 
 std::unique_ptr<PySurface> surface_of(const py::object& vertices, const py::object& faces,

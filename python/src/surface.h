@@ -59,6 +59,8 @@ struct PyMesh {
 void add_errors(py::module_& module);
 void add_surface(py::module_& module);
 void add_pair_queries(py::module_& module);
+/// After add_signatures().
+void quicken_collide(py::module_& module);
 void add_point_queries(py::class_<PySurface>& surface, py::module_& module);
 void add_brep(py::class_<PySurface>& surface);
 void add_shapes(py::class_<PySurface>& surface, py::module_& module);

@@ -50,6 +50,7 @@ def test_pairs_inside(manager):
     # Between the faces x = 1 of the left one and x = 0.5 of the right one: their edges cross.
     assert 0.4 <= data[0].point[0] <= 1.1 and np.all(np.abs(data[0].point[1:]) <= 1 + 1e-9)
     assert data[0].depth == pytest.approx(0.5, rel=0.1)
+    np.testing.assert_allclose(data[0].normal, [1, 0, 0], atol=1e-6)  # the middle one parts from the left one that way
     assert max(data[0].index("left"), data[0].index("middle")) >= 0
     with pytest.raises(ValueError, match="nobody"):
         data[0].index("nobody")
@@ -276,3 +277,36 @@ def test_a_scene():
     manager, objects = snug.collision.scene_to_collision(Scene())
     assert set(objects) == {"one", "two", "far"} and objects["one"] is objects["far"]
     assert manager.in_collision_internal(return_names=True) == (True, {("one", "two")})
+
+
+def test_groups_and_pairs_that_may_touch(manager):
+    manager.add_object("hand", cube(), moved(2.5), group="arm")
+    manager.add_object("wrist", cube(), moved(3.8), group="arm")
+    def touching():
+        return manager.in_collision_internal(return_names=True)[1]
+    assert touching() == {("left", "middle"), ("hand", "middle"), ("hand", "wrist"), ("right", "wrist")}
+    manager.allow("arm", "arm")
+    assert manager.is_allowed("hand", "wrist") and not manager.is_allowed("hand", "right")
+    manager.allow("middle", "left")
+    assert touching() == {("hand", "middle"), ("right", "wrist")}
+    manager.allow("arm", "right")
+    assert manager.in_collision_internal() is True
+    manager.allow("arm", "middle")
+    assert touching() == set()
+    # Nor is their distance asked for: left and hand are the nearest of the others, 1/2 apart.
+    least, names = manager.min_distance_internal(return_names=True)
+    assert least == pytest.approx(0.5, rel=0.01) and names == ("hand", "left")
+    manager.allow("middle", "left", False)
+    assert touching() == {("left", "middle")}
+    # Of something from outside nothing is allowed.
+    assert manager.in_collision_single(cube(), moved(2.5)) is True
+
+
+def test_what_is_made_and_asked_is_logged(caplog, manager):
+    with caplog.at_level("DEBUG", logger="snug"):
+        cube()
+        snug.read(MODELS / "pin.obj")
+        manager.in_collision_internal()
+    texts = [record.getMessage() for record in caplog.records if record.name == "snug"]
+    assert texts[0] == "arrays: 6 faces, catmark" and texts[1].endswith("faces, catmark") and "pin.obj: " in texts[1]
+    assert "of the pairs of 3 objects" in texts[2]

@@ -85,6 +85,31 @@ def test_motions(a, b, c):
         first = attempt(lambda: snug.time_of_contact(SOLID, None, SOLID, motion, max_splits=2000))
         if first is not None:
             assert first.lower <= first.upper
+        room = attempt(lambda: snug.clearance(SOLID, None, SOLID, motion, relative=0.3, max_splits=2000))
+        if room is not None:
+            assert room.lower <= room.upper and (room.spans.lower <= room.spans.upper).all()
+
+
+names = st.one_of(anything, st.sampled_from(["a", "b", "c"]))
+
+
+@given(names, names, anything)
+def test_managers(a, b, pose):
+    manager = snug.CollisionManager(tolerance=0.1, depth=False)
+    for name in (a, b):
+        attempt(lambda: manager.add_object(name, SOLID, pose, group=b))
+        attempt(lambda: manager.allow(a, name))
+    attempt(lambda: manager.in_collision_internal(return_names=True, return_data=True))
+    attempt(lambda: manager.min_distance_internal(a))
+
+
+@given(anything, anything, anything, anything)
+def test_contacts_and_meshes(pose, within, error, mesh):
+    attempt(lambda: snug.contacts(SOLID, SOLID, pose_b=pose, within=within, error=error, max_splits=100))
+    attempt(lambda: snug.inspect(mesh, CUBE_FACES))
+    attempt(lambda: snug.inspect(CUBE, mesh))
+    attempt(lambda: SOLID.envelope(error, clearance=within, gap=mesh, max_splits=100))
+    attempt(lambda: SOLID.topology_of(within, error))
 
 
 @given(anything, anything, st.sampled_from(["nearest", "any", "all"]), st.booleans())
@@ -145,7 +170,8 @@ def test_options(a, b, c):
     attempt(lambda: SOLID.hull(a, max_splits=100))
     attempt(lambda: snug.deviation(SOLID, a, max_splits=100))
     attempt(lambda: SOLID.self_contact(within=a, radius=b, levels=c, max_splits=100))
-    attempt(lambda: snug.time_of_contact(SOLID, None, SOLID, [moved(3), moved()], tolerance=a, max_splits=2000))
+    attempt(lambda: snug.time_of_contact(SOLID, None, SOLID, [moved(3), moved()], tolerance=a, margin=b, max_splits=2000))
+    attempt(lambda: snug.clearance(SOLID, None, SOLID, [moved(3), moved()], absolute=a, relative=b, max_splits=2000))
     attempt(lambda: SOLID.update(a))
     attempt(lambda: snug.Surface(CUBE, CUBE_FACES, scheme=a, boundary=b, crease_method=c))
     attempt(lambda: snug.Surface(CUBE, CUBE_FACES, sharp=a, weld=b, smooth_triangles=c))
