@@ -139,6 +139,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/draw_nodal build/release/bin/snug docs/pictures
 	@scripts/draw_rays build/release/bin/snug docs/pictures
 	@scripts/draw_independence build/release/bin/snug-research docs/pictures
+	@scripts/draw_examples build/release docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py
 

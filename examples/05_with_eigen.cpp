@@ -4,52 +4,35 @@
 
 #include <cstddef>
 #include <cstdio>
-#include <exception>
 #include <utility>
 #include <vector>
 
 #include <snug/snug.h>
 #include <Eigen/Core>
 
-namespace {
-
 // A Point3 is three doubles, so an array of them is a matrix with a column for each point.
 static_assert(sizeof(snug::Point3) == 3 * sizeof(double));
-
-Eigen::Map<Eigen::Matrix3Xd> columns(std::vector<snug::Point3>& points) {
+static Eigen::Map<Eigen::Matrix3Xd> columns(std::vector<snug::Point3>& points) {
   return {points.empty() ? nullptr : &points.front().x, 3, static_cast<Eigen::Index>(points.size())};
 }
 
-}  // namespace
-
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: 05_with_eigen MESH\n");
-    return 2;
-  }
-  try {
-    // Move the mesh to the origin and scale it to size 1.
-    snug::ControlMesh mesh = snug::read_mesh(argv[1]);
-    Eigen::Map<Eigen::Matrix3Xd> vertices = columns(mesh.points);
-    const Eigen::Vector3d lower = vertices.rowwise().minCoeff(), upper = vertices.rowwise().maxCoeff();
-    vertices.colwise() -= 0.5 * (lower + upper);
-    vertices /= (upper - lower).maxCoeff();
-    const snug::Surface surface(std::move(mesh));
+  if (argc != 2) return 2;
+  // Move the mesh to the origin and scale it to size 1.
+  snug::ControlMesh mesh = snug::read_mesh(argv[1]);
+  Eigen::Map<Eigen::Matrix3Xd> vertices = columns(mesh.points);
+  const Eigen::Vector3d lower = vertices.rowwise().minCoeff(), upper = vertices.rowwise().maxCoeff();
+  vertices.colwise() -= 0.5 * (lower + upper);
+  vertices /= (upper - lower).maxCoeff();
+  const snug::Surface surface(std::move(mesh));
 
-    // Random points around it, and the limit points closest to them.
-    std::vector<snug::Point3> probes(1000);
-    columns(probes).setRandom();
-    const std::vector<snug::ClosestPoint> answers = snug::closest_point(surface, probes, {.relative = 1e-6});
-    std::vector<snug::Point3> closest;
-    for (const snug::ClosestPoint& answer : answers) closest.push_back(answer.point);
-
-    const Eigen::Matrix3Xd offsets = columns(closest) - columns(probes);
-    const Eigen::RowVectorXd distances = offsets.colwise().norm();
-    std::printf("%ld points, their mean distance from the surface is %g, the largest %g\n",
-                static_cast<long>(offsets.cols()), distances.mean(), distances.maxCoeff());
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  // Random points around it, and the limit points closest to them.
+  std::vector<snug::Point3> probes(1000), closest;
+  columns(probes).setRandom();
+  for (const snug::ClosestPoint& answer : snug::closest_point(surface, probes, {.relative = 1e-6}))
+    closest.push_back(answer.point);
+  const Eigen::RowVectorXd distances = (columns(closest) - columns(probes)).colwise().norm();
+  std::printf("%ld points, their mean distance from the surface is %g, the largest %g\n",
+              static_cast<long>(distances.size()), distances.mean(), distances.maxCoeff());
+  return 0;
 }
