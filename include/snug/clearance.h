@@ -42,8 +42,8 @@ struct Clearance {
 /// Budget:    1,000,000 in each unit of time, in the unit of time_of_contact(). Spans with the least lower ends come first.
 /// Requires:  motions of the same duration, or one surface that stays.
 /// Errors:    those of time_of_contact(), of a precision instead of a tolerance.
-/// Cost:      a distance query for each time evaluated: about twice the way that points move against each other over
-///            the precision, or its logarithm where they slide past each other (bench/results/contact_time.txt).
+/// Cost:      a distance query for each time evaluated, at most some twice as many as the way that points move against each
+///            other is longer than the precision; a few where they slide past each other.
 /// Source:    derivations/time_of_contact.md, "Clearance".
 [[nodiscard]] SNUG_API Clearance clearance(const Surface& a, const Trajectory& motion_a, const Surface& b,
                                            const Trajectory& motion_b, const ClearanceOptions& options = {},
