@@ -2,20 +2,24 @@
 
 #include <fmt/core.h>
 #include <support/atomic_file.h>
+#include <support/read_file.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "answer_writer.h"
 #include "common.h"
+#include "pose.h"
 #include "progress_bar.h"
+#include "scene_file.h"
 
 namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, error, name, units = "mm", protocol = "ap242";
+  std::string mesh, scene, error, name, units = "mm", protocol = "ap242";
   double max_angle = 0;
+  bool nearest_rigid = false;
 };
 
 LengthUnit unit_named(const std::string& name) {
@@ -32,21 +36,36 @@ double error_of(const Options& options, const Surface& surface) {
 
 std::string name_of_part(const Options& options) {
   if (!options.name.empty()) return options.name;
-  return options.mesh == "-" ? "part" : std::filesystem::path(options.mesh).stem().string();
+  const std::string& file = options.scene.empty() ? options.mesh : options.scene;
+  return file == "-" ? "part" : std::filesystem::path(file).stem().string();
 }
 
 std::string number_of(std::size_t count, const char* word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
 }
 
-void write_summary(Report& report, const Options& options, double error, const Brep& brep,
-                   std::size_t bytes) {
-  if (report.json()) {
-    JsonWriter& json = report.write();
-    json.field("error", error);
-    write_fields(json, brep);
-    json.field("bytes", bytes).field("units", options.units);
+// Surfaces on their way to a file, and the parts of an assembly.
+struct Job {
+  std::vector<std::string> meshes;  // their files
+  std::vector<Surface> surfaces;
+  std::vector<double> errors;
+  std::vector<StepShape> shapes;
+  std::vector<StepPart> parts;
+  void add(const std::string& mesh, const Surface& surface, const std::string& name) {
+    meshes.push_back(mesh);
+    surfaces.push_back(surface);
+    shapes.push_back({name, {}});
   }
+};
+
+std::string unit_word(const Options& options) { return options.units == "inch" ? "in" : options.units; }
+
+void write_fields_of(JsonWriter& json, const Job& job, std::size_t i) {
+  json.field("error", job.errors[i]);
+  write_fields(json, job.shapes[i].brep);
+}
+
+void write_shape(Report& report, const Options& options, const std::string& name, const Brep& brep) {
   std::string shapes;
   const auto add = [&](std::size_t count, const char* word) {
     if (count > 0) shapes += (shapes.empty() ? "" : ", ") + number_of(count, word);
@@ -54,9 +73,9 @@ void write_summary(Report& report, const Options& options, double error, const B
   add(fields::solids(brep), "solid");
   add(fields::voids(brep), "void");
   add(fields::sheets(brep), "open sheet");
-  const std::string unit = options.units == "inch" ? "in" : options.units;
-  report.text(fmt::format("{}: {}; {}, {} spans, {} bytes, in {}", options.output, shapes,
-                          number_of(brep.faces.size(), "B-spline face"), brep.spans, bytes, unit));
+  const std::string unit = unit_word(options);
+  report.text(fmt::format("{}: {}; {}, {} spans, in {}", name, shapes, number_of(brep.faces.size(), "face"),
+                          brep.spans, unit));
   report.text(fmt::format("faces within {} {} of the limit surface and {:.1e} {} of their edges: proved",
                           text_at_most(brep.error_bound, true), unit, 1.06 * brep.gap_bound,
                           unit));  // rounded up
@@ -69,32 +88,88 @@ void write_summary(Report& report, const Options& options, double error, const B
     report.text("the error or angle was not reached: give a larger --error or --max-angle");
 }
 
+void write_summary(Report& report, const Options& options, const Job& job, std::size_t bytes) {
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    if (options.scene.empty()) {
+      write_fields_of(json, job, 0);
+    } else {
+      json.field("parts", job.parts.size());
+      json.key("shapes").begin_array();
+      for (std::size_t i = 0; i < job.shapes.size(); ++i) {
+        json.begin_object().field("name", job.shapes[i].name);
+        write_fields_of(json, job, i);
+        json.end_object();
+      }
+      json.end_array();
+    }
+    json.field("bytes", bytes).field("units", options.units);
+  }
+  if (options.scene.empty()) {
+    write_shape(report, options, options.output, job.shapes[0].brep);
+  } else {
+    report.text(fmt::format("{}: {} of {}", options.output, number_of(job.parts.size(), "part"),
+                            number_of(job.shapes.size(), "shape")));
+    for (std::size_t i = 0; i < job.shapes.size(); ++i)
+      write_shape(report, options, job.meshes[i], job.shapes[i].brep);
+  }
+  report.text(number_of(bytes, "byte"));
+}
+
+// The mesh, or a scene.
+Job read_all(const Options& options, const WorkMonitor& monitor) {
+  Job job;
+  if (options.scene.empty()) {
+    job.add(options.mesh, read_surface(options.mesh, options, options.scheme), name_of_part(options));
+    return job;
+  }
+  const LoadedScene scene = load_scene(
+      options.scene, options, options.nearest_rigid,
+      [&](const std::string& path) { return read_file(path, monitor); }, monitor);
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    const std::string& file = scene.text.meshes[i].file;
+    job.add(file, scene.surfaces[i], std::filesystem::path(file).stem().string());
+  }
+  for (const SceneText::Part& part : scene.text.parts) job.parts.push_back({part.name, part.mesh, part.pose});
+  return job;
+}
+
 ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("convert: -o FILE.step is missing: where the solid goes");
   if (options.json && options.output == "-")
     throw UsageError("convert: --json and -o - both want standard output");
   if (!options.error.empty()) static_cast<void>(parse_length(options.error, "--error"));
-  const Surface surface = read_surface(options.mesh, options, options.scheme);
+  Job job = read_all(options, stopped_by_interrupts());
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("convert", to_standard_output);
-  Brep brep;
-  double error = 0;
-  naming(options.mesh, [&] {
-    error = error_of(options, surface);
-    ProgressBar bar("converting " + options.mesh, options.quiet);
+  bool complete = true;
+  std::vector<std::string> schemes;
+  std::string text;
+  {
+    ProgressBar bar("converting " + (options.scene.empty() ? options.mesh : options.scene), options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    BrepOptions how{error, {}};
-    if (options.max_angle > 0) how.max_angle = options.max_angle;
-    brep = to_brep(surface, how, run_of(options, monitor));
-  });
+    const Run run = run_of(options, monitor);
+    for (std::size_t i = 0; i < job.shapes.size(); ++i) {
+      const Surface& surface = job.surfaces[i];
+      naming(job.meshes[i], [&] {
+        BrepOptions how{error_of(options, surface), {}};
+        job.errors.push_back(*how.error);
+        if (options.max_angle > 0) how.max_angle = options.max_angle;
+        job.shapes[i].brep = to_brep(surface, how, run);
+      });
+      complete = complete && job.shapes[i].brep.outcome == Outcome::complete;
+      schemes.emplace_back(name_of(surface.scheme()));
+    }
+    const StepOptions how{name_of_part(options), unit_named(options.units), options.protocol == "ap214"};
+    text = options.scene.empty() ? format_step(job.shapes[0].brep, how, run)
+                                 : format_step(job.shapes, job.parts, how, run);
+  }
   AtomicFile file(options.output);
-  const std::string text =
-      format_step(brep, {name_of_part(options), unit_named(options.units), options.protocol == "ap214"});
   file.write(text);
-  report.heads({options.mesh}, {name_of(surface.scheme())});
-  if (options.output != "-" || report.json()) write_summary(report, options, error, brep, text.size());
-  return report.finish(brep.outcome == Outcome::complete, {&file});
+  report.heads(job.meshes, schemes);
+  if (options.output != "-" || report.json()) write_summary(report, options, job, text.size());
+  return report.finish(complete, {&file});
 }
 
 }  // namespace
@@ -104,7 +179,10 @@ Command convert_command() {
   options->max_splits = default_splits::brep;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)")
+      .unless("--scene");
+  list.add(Group::own, "--scene FILE", &options->scene,
+           "A scene file instead: an assembly, in which its parts are placed");
   list.add(Group::own, "--error LENGTH", &options->error,
            "Largest distance between limit surface and faces; mesh units, percent, or with a unit, such as "
            "0.01mm "
@@ -114,9 +192,10 @@ Command convert_command() {
       .between(0, 90);
   list.add(Group::own, "--units UNIT", &options->units, "Units of the mesh")
       .one_of({"mm", "cm", "m", "inch"});
-  list.add(Group::own, "--name NAME", &options->name, "Name of the part; default: the file's");
+  list.add(Group::own, "--name NAME", &options->name, "Name of the part or assembly; default: the file's");
   list.add(Group::own, "--protocol NAME", &options->protocol, "Application protocol of the STEP file")
       .one_of({"ap242", "ap214"});
+  add_nearest_rigid_option(list, options->nearest_rigid).needs("--scene");
   add_common_options(list, *options);
   list.add(Group::effort, "--max-splits N", &options->max_splits,
            "At most N spans, polynomial pieces of faces; if more are needed, write what is proved and exit "
@@ -124,7 +203,8 @@ Command convert_command() {
   return {"convert",
           Topic::files,
           "Write a STEP file of B-spline faces within a proved distance of the limit surface",
-          {"snug convert bracket.obj -o bracket.step --error 0.01mm"},
+          {"snug convert bracket.obj -o bracket.step --error 0.01mm",
+           "snug convert --scene assembly.json -o assembly.step"},
           std::move(list),
           [options] { return run(*options); }};
 }

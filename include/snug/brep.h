@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct Brep {
     std::vector<Side> loop;  ///< all of its border, counter-clockwise seen from outside
     std::uint32_t owner;     ///< a face of the mesh that it lies over; in a dual scheme, a vertex
     double error_bound;      ///< proved: at every parameter, largest distance from the limit point there
+
+    /// Has it three sides? It is then the half u >= v of a unit square of its surface's parameters, and the diagonal is its
+    /// third side. Beyond it the surface goes on without a meaning.
+    [[nodiscard]] bool triangle() const { return loop.size() == 3; }
   };
   /// Faces that edges join: faces[begin] to faces[end - 1].
   struct Shell {
@@ -70,16 +75,16 @@ struct BrepOptions {
   std::optional<double> max_angle{};
 };
 
-/// A limit surface as B-spline faces: exact, up to rounding, wherever it is polynomial; beside extraordinary vertices and
-/// semi-sharp creases approximated with as many spans as the error takes. Regular faces that form a rectangle become one.
+/// A limit surface as B-spline faces: of schemes of quads exact, up to rounding, wherever it is polynomial; beside extraordinary
+/// vertices and semi-sharp creases, and of Loop everywhere, approximated with as many spans as the error takes. Regular faces that
+/// form a rectangle become one. Of Loop most faces are over two triangles; facets stay apart, as planes.
 ///
 /// Guarantee: error_bound and gap_bound are proved for the doubles returned, whatever the outcome. Faces share their edges: an
 ///            edge belongs to two faces, on a border to one.
 /// Not proved: break_angle, and which closed shells are voids (at most 2,000 shells are compared).
 /// Budget:    10,000,000 spans; a kilobyte each.
 /// Errors:    InputError: (value) for an error that is not finite and positive or too small for doubles, for an angle out of
-///            range, and for a budget below one span a quad; (refused) for a scheme of triangles or Midedge, for an edge with more than two
-///            faces or with two that run along it in the same direction, and for a face that is its own neighbour;
+///            range, and for a budget below one span a face; (refused) for Midedge, for an edge with more than two faces or with two that run along it in the same direction, and for a face that is its own neighbour;
 ///            (unrepresentable). Interrupted.
 /// Cost:      10 microseconds a regular face, 200 beside an extraordinary vertex, up to 20 milliseconds beside creases of high
 ///            sharpness.
@@ -98,8 +103,30 @@ struct StepOptions {
 
 /// A part as STEP text (ISO 10303-21): a solid for each closed shell that is not a void, a surface model for each open one.
 /// Guarantee: coordinates are read back as the same doubles.
-[[nodiscard]] SNUG_API std::string format_step(const Brep& brep, const StepOptions& options = {});
-/// The same to a file, completely or not at all. Returns its bytes. Errors: InputError (unreadable).
-SNUG_API std::size_t write_step(const Brep& brep, const std::string& path, const StepOptions& options = {});
+/// Errors:    Interrupted.
+[[nodiscard]] SNUG_API std::string format_step(const Brep& brep, const StepOptions& options = {},
+                                               const Run& run = {});
+/// The same to a file, completely or not at all. Returns its bytes. Errors: InputError (unreadable). Interrupted.
+SNUG_API std::size_t write_step(const Brep& brep, const std::string& path, const StepOptions& options = {},
+                                const Run& run = {});
+
+/// A shape of an assembly: a product of its own, with this name.
+struct StepShape {
+  std::string name;
+  Brep brep;
+};
+/// An occurrence of a shape in an assembly.
+struct StepPart {
+  std::string name;
+  std::uint32_t shape = 0;  ///< which of the shapes
+  Motion pose;              ///< in the shape's units
+};
+/// An assembly as STEP text: a product named options.name, in which each part is a placed shape.
+/// Guarantee: translations are read back as the same doubles; rotations are written as two directions, which readers make
+///            orthogonal.
+/// Errors:    InputError (value) for a part whose shape does not exist. Interrupted.
+[[nodiscard]] SNUG_API std::string format_step(std::span<const StepShape> shapes,
+                                               std::span<const StepPart> parts,
+                                               const StepOptions& options = {}, const Run& run = {});
 
 }  // namespace snug

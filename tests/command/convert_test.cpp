@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -54,7 +55,25 @@ TEST(convert, says_what_it_cannot_do_and_leaves_nothing) {
   refused({model("bracket.obj"), "-o", folder.file("a.step"), "--error", "1furlong"}, 2,
           "not a positive length");
   refused({model("bracket.obj"), "-o", folder.file("a.step"), "--error", "1e-20"}, 4, "the least is");
-  refused({model("bust.obj"), "-o", folder.file("a.step")}, 4, "schemes of quads");
+  refused({model("bracket.obj"), "--scheme", "midedge", "-o", folder.file("a.step")}, 4, "midedge");
+}
+
+TEST(convert, a_scene_is_an_assembly) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("scene.json"), file = folder.file("scene.step");
+  const std::string mesh = json(model("bracket.obj")).dump();
+  std::ofstream(scene) << R"({"parts": [{"name": "a", "mesh": )" << mesh << R"(}, {"name": "b", "mesh": )"
+                       << mesh << R"(, "place": {"move": [3, 0, 0]}}]})";
+  const Outcome outcome = run_snug({"convert", "--scene", scene, "-o", file, "--error", "1%", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["parts"], 2);
+  ASSERT_EQ(found["shapes"].size(), 1u);
+  EXPECT_EQ(found["shapes"][0]["name"], "bracket");
+  EXPECT_LE(found["shapes"][0]["error_bound"], 0.02);
+  const std::string text = text_of(file);
+  EXPECT_NE(text.find("NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','b'"), std::string::npos);
+  EXPECT_NE(text.find("PRODUCT('scene'"), std::string::npos);
 }
 
 TEST(convert, lengths_with_a_unit_need_a_mesh_with_one) {

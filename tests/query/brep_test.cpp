@@ -30,7 +30,7 @@ Point3 point_of(const SplineSurface& s, double u, double v) {
 double distance_of(const Point3& a, const Point3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
 // Of a surface by the flux through it, by Gauss points on each span.
-double flux(const SplineSurface& s) {
+double flux(const SplineSurface& s, bool triangle = false) {
   constexpr double nodes[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                               0.8611363115940526};
   constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
@@ -40,18 +40,21 @@ double flux(const SplineSurface& s) {
   for (std::size_t j = 0; j + 1 < s.v_knots.size(); ++j) {
     for (std::size_t i = 0; i + 1 < s.u_knots.size(); ++i) {
       const double du = s.u_knots[i + 1] - s.u_knots[i], dv = s.v_knots[j + 1] - s.v_knots[j];
-      if (du == 0 || dv == 0) continue;
+      if (du == 0 || dv == 0 || (triangle && s.v_knots[j] > s.u_knots[i])) continue;
+      const bool half = triangle && s.v_knots[j] == s.u_knots[i];
       for (int a = 0; a < 4; ++a) {
         for (int b = 0; b < 4; ++b) {
-          const double u = s.u_knots[i] + du * (nodes[a] + 1) / 2, v = s.v_knots[j] + dv * (nodes[b] + 1) / 2;
+          // Of half a span v runs from 0 to u.
+          const double x = (nodes[a] + 1) / 2, y = (nodes[b] + 1) / 2 * (half ? x : 1);
+          const double u = s.u_knots[i] + du * x, v = s.v_knots[j] + dv * y;
           const Point3 p = point_of(s, u, v), pu = point_of(s, u + h * du, v),
                        mu = point_of(s, u - h * du, v), pv = point_of(s, u, v + h * dv),
                        mv = point_of(s, u, v - h * dv);
-          const double x[] = {(pu.x - mu.x) / (2 * h), (pu.y - mu.y) / (2 * h), (pu.z - mu.z) / (2 * h)};
-          const double y[] = {(pv.x - mv.x) / (2 * h), (pv.y - mv.y) / (2 * h), (pv.z - mv.z) / (2 * h)};
-          sum += weights[a] * weights[b] / 4 / 3 *
-                 (p.x * (x[1] * y[2] - x[2] * y[1]) + p.y * (x[2] * y[0] - x[0] * y[2]) +
-                  p.z * (x[0] * y[1] - x[1] * y[0]));
+          const double d[] = {(pu.x - mu.x) / (2 * h), (pu.y - mu.y) / (2 * h), (pu.z - mu.z) / (2 * h)};
+          const double e[] = {(pv.x - mv.x) / (2 * h), (pv.y - mv.y) / (2 * h), (pv.z - mv.z) / (2 * h)};
+          sum += weights[a] * weights[b] * (half ? x : 1) / 4 / 3 *
+                 (p.x * (d[1] * e[2] - d[2] * e[1]) + p.y * (d[2] * e[0] - d[0] * e[2]) +
+                  p.z * (d[0] * e[1] - d[1] * e[0]));
         }
       }
     }
@@ -63,7 +66,7 @@ double flux(const SplineSurface& s) {
 void expect_joined(const Brep& brep) {
   std::vector<std::array<int, 2>> uses(brep.edges.size(), {0, 0});
   for (const Brep::Face& face : brep.faces) {
-    ASSERT_GE(face.loop.size(), 4u);
+    ASSERT_GE(face.loop.size(), 3u);
     std::set<std::uint32_t> own;  // no face is beside itself
     for (const Brep::Side& side : face.loop) EXPECT_TRUE(own.insert(side.edge).second);
     for (std::size_t k = 0; k < face.loop.size(); ++k) {
@@ -120,6 +123,8 @@ void expect_edges_on_faces(const Brep& brep) {
     const SplineSurface& s = face.surface;
     const double w = s.u_knots.back(), h = s.v_knots.back();
     const auto on_side = [&](std::size_t side, double t) {
+      if (face.triangle() && side == 2)
+        return oracle::spline_point(s.degree, s.u_knots, s.v_knots, s.points, 1 - t, 1 - t);
       const double u = side == 0   ? t
                        : side == 1 ? w
                        : side == 2 ? w - t
@@ -131,7 +136,7 @@ void expect_edges_on_faces(const Brep& brep) {
       return oracle::spline_point(s.degree, s.u_knots, s.v_knots, s.points, u, v);
     };
     std::size_t next = 0;
-    for (std::size_t side = 0; side < 4; ++side) {
+    for (std::size_t side = 0; side < (face.triangle() ? 3 : 4); ++side) {
       const double length = side % 2 == 0 ? w : h;
       for (double begin = 0; begin < length; ++next) {
         ASSERT_LT(next, face.loop.size());
@@ -161,12 +166,12 @@ void expect_edges_on_faces(const Brep& brep) {
   }
 }
 
-TEST(brep, faces_are_as_near_as_they_say_with_every_tag_and_rule) {
+void expect_near_with_every_tag_and_rule(oracle::PrimalScheme scheme) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   std::size_t made = 0, refused = 0, complete = 0;
   std::size_t number = 0;
-  for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::catmull_clark, 11)) {
+  for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 11)) {
     if (number++ % 3 != 0 && !testing::long_check()) continue;
     SCOPED_TRACE(c.name + ", " + testing::text_of(c.rules));
     std::optional<Surface> surface;
@@ -187,8 +192,8 @@ TEST(brep, faces_are_as_near_as_they_say_with_every_tag_and_rule) {
     for (const Brep::Face& face : brep.faces) {
       EXPECT_LE(face.error_bound, brep.error_bound);
       for (int k = 0; k < 2; ++k) {
-        const double u = unit(random) * face.surface.u_knots.back(),
-                     v = unit(random) * face.surface.v_knots.back();
+        double u = unit(random) * face.surface.u_knots.back(), v = unit(random) * face.surface.v_knots.back();
+        if (face.triangle() && v > u) std::swap(u, v);
         const ClosestPoint found = closest_point(*surface, point_of(face.surface, u, v), {.absolute = 1e-7});
         EXPECT_LE(found.distance.lower, face.error_bound + 1e-12);
       }
@@ -200,19 +205,29 @@ TEST(brep, faces_are_as_near_as_they_say_with_every_tag_and_rule) {
   EXPECT_GE(refused, 1u);  // books, moebius strips
 }
 
+TEST(brep, faces_are_as_near_as_they_say_with_every_tag_and_rule) {
+  expect_near_with_every_tag_and_rule(oracle::PrimalScheme::catmull_clark);
+}
+TEST(brep, faces_of_triangles_are_as_near_as_they_say_with_every_tag_and_rule) {
+  expect_near_with_every_tag_and_rule(oracle::PrimalScheme::loop);
+}
+
 TEST(brep, of_a_solid_bounds_its_volume) {
   for (const auto& [name, mesh] :
        {std::pair{"cube", meshes::cube()}, {"prism", meshes::prism(5)}, {"pyramid", meshes::pyramid(7)}}) {
-    for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::bilinear}) {
+    for (const Scheme scheme :
+         {Scheme::catmark, Scheme::doo_sabin, Scheme::bilinear, Scheme::loop, Scheme::flat}) {
       SCOPED_TRACE(std::string(name) + ", " + name_of(scheme));
-      const Surface surface(testing::control_mesh(mesh), {.scheme = scheme});
+      const bool triangles = scheme == Scheme::loop || scheme == Scheme::flat;
+      const Surface surface(testing::control_mesh(triangles ? meshes::triangulated(mesh) : mesh),
+                            {.scheme = scheme});
       const Brep brep = to_brep(surface, {.error = 5e-3});
       EXPECT_EQ(brep.outcome, Outcome::complete);
       ASSERT_EQ(brep.shells.size(), 1u);
       EXPECT_TRUE(brep.shells[0].closed);
       EXPECT_EQ(brep.vertices.size() - brep.edges.size() + brep.faces.size(), 2u);
       double volume = 0, area = 0;
-      for (const Brep::Face& face : brep.faces) volume += flux(face.surface);
+      for (const Brep::Face& face : brep.faces) volume += flux(face.surface, face.triangle());
       const Measures exact = measure(surface);
       area = exact.area.upper;
       EXPECT_GE(volume, exact.volume->lower - 2 * brep.error_bound * area - 1e-6);
@@ -297,7 +312,7 @@ TEST(brep, regular_quads_in_rows_and_columns_are_one_face) {
   const Surface surface(torus, {.scheme = Scheme::catmark});
   const Brep brep = to_brep(surface);
   double volume = 0;
-  for (const Brep::Face& face : brep.faces) volume += flux(face.surface);
+  for (const Brep::Face& face : brep.faces) volume += flux(face.surface, face.triangle());
   const Interval exact = *measure(surface).volume;
   EXPECT_GE(volume, exact.lower - 1e-6);
   EXPECT_LE(volume, exact.upper + 1e-6);
@@ -306,6 +321,109 @@ TEST(brep, regular_quads_in_rows_and_columns_are_one_face) {
   EXPECT_LE(brep.error_bound, 1e-13);
   EXPECT_EQ(brep.vertices.size() + brep.faces.size(), brep.edges.size());
   expect_joined(brep);
+}
+
+// The same of triangles: all of them are in pairs, whose diagonals are parallel.
+TEST(brep, regular_triangles_in_rows_and_columns_are_one_face) {
+  constexpr std::uint32_t m = 12, n = 8;
+  oracle::TaggedMesh torus;
+  for (std::uint32_t i = 0; i < m; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const double u = 6.283185307179586 * i / m, v = 6.283185307179586 * j / n;
+      torus.points.push_back({(3 + std::cos(v)) * std::cos(u), (3 + std::cos(v)) * std::sin(u), std::sin(v)});
+      const std::uint32_t k = (i + 1) % m, l = (j + 1) % n;
+      torus.polygons.push_back({i * n + j, k * n + j, k * n + l, i * n + l});
+    }
+  }
+  const oracle::TaggedMesh triangles = meshes::triangulated(torus);
+  for (const double error : {0.01, 1e-4}) {
+    const Surface surface(testing::control_mesh(triangles), {.scheme = Scheme::loop});
+    const Brep brep = to_brep(surface, {.error = error});
+    EXPECT_EQ(brep.outcome, Outcome::complete);
+    EXPECT_LE(brep.faces.size(), 10u);
+    EXPECT_LE(brep.error_bound, error);
+    EXPECT_EQ(brep.vertices.size() + brep.faces.size(), brep.edges.size());
+    expect_joined(brep);
+    expect_edges_on_faces(brep);
+    double volume = 0;
+    for (const Brep::Face& face : brep.faces) {
+      EXPECT_FALSE(face.triangle());
+      volume += flux(face.surface);
+    }
+    const Measures exact = measure(surface);
+    EXPECT_GE(volume, exact.volume->lower - 2 * error * exact.area.upper);
+    EXPECT_LE(volume, exact.volume->upper + 2 * error * exact.area.upper);
+  }
+}
+
+// No pair lies across a crease, and facets stay apart.
+TEST(brep, triangles_beside_creases_are_in_other_pairs) {
+  oracle::TaggedMesh mesh = meshes::triangulated(meshes::quad_grid(4, 4));
+  for (std::uint32_t i = 0; i < 4; ++i) mesh.creases.push_back({6 * i, 6 * (i + 1), 10});  // the diagonals
+  const Surface creased(testing::control_mesh(mesh), {.scheme = Scheme::loop});
+  const Brep brep = to_brep(creased);
+  std::size_t singles = 0;
+  for (const Brep::Face& face : brep.faces) singles += face.triangle() ? 1 : 0;
+  EXPECT_GT(singles, 0u);
+  std::size_t on_crease = 0;  // edges there
+  for (const Brep::Edge& edge : brep.edges) {
+    const Point3 &a = brep.vertices[edge.vertices[0]], &b = brep.vertices[edge.vertices[1]];
+    on_crease += std::fabs(a.x - a.y) < 1e-9 && std::fabs(b.x - b.y) < 1e-9 ? 1 : 0;
+  }
+  EXPECT_EQ(on_crease, 4u);
+  const Surface flat(testing::control_mesh(mesh), {.scheme = Scheme::flat});
+  const Brep facets = to_brep(flat);
+  EXPECT_EQ(facets.faces.size(), 32u);
+  EXPECT_LE(facets.error_bound, 1e-14);
+  expect_joined(facets);
+  expect_edges_on_faces(facets);
+  EXPECT_NE(format_step(facets).find("PLANE"), std::string::npos);
+}
+
+// Facets with a void inside, turned the wrong way: their halves stay halves.
+TEST(brep, facets_are_turned_outward) {
+  oracle::TaggedMesh cube = meshes::triangulated(meshes::cube());
+  for (auto& polygon : cube.polygons) std::reverse(polygon.begin(), polygon.end());
+  for (const Scheme scheme : {Scheme::flat, Scheme::loop}) {
+    const Surface surface(testing::control_mesh(cube), {.scheme = scheme});
+    const Brep brep = to_brep(surface, {.error = 0.01});
+    expect_joined(brep);
+    expect_edges_on_faces(brep);
+    double volume = 0;
+    for (const Brep::Face& face : brep.faces) volume += flux(face.surface, face.triangle());
+    EXPECT_GT(volume, 0);
+    if (scheme == Scheme::flat) {
+      EXPECT_NEAR(volume, 1, 1e-6);
+    }
+  }
+}
+
+std::size_t count_of(const std::string& text, const std::string& word) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+TEST(brep, assemblies_place_shapes) {
+  std::vector<StepShape> shapes;
+  shapes.push_back(
+      {"cube", to_brep(Surface(testing::control_mesh(meshes::cube()), {.scheme = Scheme::bilinear}))});
+  shapes.push_back(
+      {"tri\xc3\xa4ngles", to_brep(Surface(testing::control_mesh(meshes::triangulated(meshes::prism(5))),
+                                           {.scheme = Scheme::flat}))});
+  std::vector<StepPart> parts{{"left", 0, Motion::translation({1, 2, 3})},
+                              {"right", 0, Motion::rotation_degrees({0, 0, 1}, 90)},
+                              {"top", 1, {}}};
+  const std::string text = format_step(shapes, parts, {.name = "all"});
+  EXPECT_EQ(count_of(text, "=PRODUCT('"), 3u);
+  EXPECT_EQ(count_of(text, "MANIFOLD_SOLID_BREP("), 2u);
+  EXPECT_EQ(count_of(text, "NEXT_ASSEMBLY_USAGE_OCCURRENCE("), 3u);
+  EXPECT_EQ(count_of(text, "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION("), 3u);
+  EXPECT_NE(text.find("'right'"), std::string::npos);
+  EXPECT_NE(text.find("tri\\X2\\00E4\\X0\\ngles"), std::string::npos);
+  EXPECT_NE(text.find("CARTESIAN_POINT('',(1.,2.,3.))"), std::string::npos);
+  parts.push_back({"none", 2, {}});
+  EXPECT_THROW(static_cast<void>(format_step(shapes, parts)), InputError);
 }
 
 TEST(brep, hollows_are_told_and_solids_turned_outward) {
@@ -327,7 +445,7 @@ TEST(brep, hollows_are_told_and_solids_turned_outward) {
   EXPECT_EQ(hollow.shells[1].void_of, 0u);
   double volume = 0;
   const Brep turned = to_brep(Surface(testing::control_mesh(inside_out), {.scheme = Scheme::catmark}));
-  for (const Brep::Face& face : turned.faces) volume += flux(face.surface);
+  for (const Brep::Face& face : turned.faces) volume += flux(face.surface, face.triangle());
   EXPECT_GT(volume, 0);
   expect_joined(turned);
 }
@@ -364,7 +482,7 @@ TEST(brep, shells_are_solids_or_hollows_whichever_way_they_are_turned) {
       EXPECT_EQ(brep.shells[s].void_of, nested.voids[s]) << s;
       double volume = 0;
       for (std::uint32_t f = brep.shells[s].begin; f < brep.shells[s].end; ++f)
-        volume += flux(brep.faces[f].surface);
+        volume += flux(brep.faces[f].surface, brep.faces[f].triangle());
       EXPECT_EQ(volume < 0, brep.shells[s].void_of.has_value()) << s;
     }
   }
@@ -380,8 +498,7 @@ std::string refusal(const oracle::TaggedMesh& mesh, Scheme scheme, const BrepOpt
 }
 
 TEST(brep, says_what_it_cannot_do) {
-  EXPECT_NE(refusal(meshes::triangulated(meshes::cube()), Scheme::loop).find("schemes of quads"),
-            std::string::npos);
+  EXPECT_NE(refusal(meshes::cube(), Scheme::midedge).find("midedge"), std::string::npos);
   EXPECT_NE(refusal(meshes::book(4), Scheme::catmark).find("an edge"), std::string::npos);
   EXPECT_NE(refusal(meshes::moebius(5), Scheme::catmark).find("same direction"), std::string::npos);
   EXPECT_NE(refusal(meshes::cube(), Scheme::catmark, {.error = 0}).find("not a positive"), std::string::npos);

@@ -27,25 +27,54 @@ BrepLayout::BrepLayout(const LimitSurface& surface)
       crease_end_(side_depths_.size(), none),
       changed_corners_(corner_depths_.size()),
       changed_sides_(side_depths_.size()) {
-  for (std::size_t p = 0; p + 1 < surface.patch_count(); p += 2) {
-    const PatchId first(p), second(p + 1);
-    if (!surface.has_patch(first)) continue;
-    const auto a = surface.corner_names(first), b = surface.corner_names(second);
-    const auto s = sides_of(surface, first), t = sides_of(surface, second);
-    quads_.push_back(
-        {first, {a[0], a[1], a[2], b[1]}, {s[0], s[1], t[0], t[1]}, surface.after_first_split(first)});
-    for (const PatchSide& side : quads_.back().sides) {
-      if (side.part == Part::first_half || side.part == Part::second_half) halved_[side.number] = true;
+  if (surface.rules().triangular()) {
+    add_quads_of_triangles();
+  } else {
+    for (std::size_t p = 0; p + 1 < surface.patch_count(); p += 2) {
+      const PatchId first(p), second(p + 1);
+      if (!surface.has_patch(first)) continue;
+      const auto a = surface.corner_names(first), b = surface.corner_names(second);
+      const auto s = sides_of(surface, first), t = sides_of(surface, second);
+      quads_.push_back(
+          {first, {a[0], a[1], a[2], b[1]}, {s[0], s[1], t[0], t[1]}, surface.after_first_split(first)});
+      for (const PatchSide& side : quads_.back().sides) {
+        if (side.part == Part::first_half || side.part == Part::second_half) halved_[side.number] = true;
+      }
     }
   }
+  connect();
+}
+
+// The lower half has the corners 0, 1 and 2 of the square, the upper one 0, 2 and 3.
+void BrepLayout::add_quads_of_triangles() {
+  for (const TrianglePair& pair : paired(surface_)) {
+    SurfaceQuad quad{pair.lower, {none, none, none, none}, {}, false, pair};
+    const auto names = surface_.corner_names(pair.lower);
+    const auto sides = sides_of(surface_, pair.lower);
+    for (std::size_t k = 0; k < 3; ++k) {
+      quad.corners[k] = names[(k + pair.turn) % 3];
+      quad.sides[k] = sides[(k + pair.turn) % 3];
+    }
+    if (pair.upper) {
+      const auto upper = sides_of(surface_, *pair.upper);
+      quad.corners[3] = surface_.corner_names(*pair.upper)[(2u + pair.upper_turn) % 3];
+      quad.sides[2] = upper[(1u + pair.upper_turn) % 3];
+      quad.sides[3] = upper[(2u + pair.upper_turn) % 3];
+    }
+    quads_.push_back(quad);
+  }
+}
+
+// Finds which quads are beside each other.
+void BrepLayout::connect() {
   if (quads_.empty()) {
     throw InputError(
         InputProblem::refused,
         "no face has a limit surface: all are holes or touch the boundary; use another boundary rule");
   }
-  segments_.resize(2 * edges_ + surface.patch_count());
+  segments_.resize(2 * edges_ + surface_.patch_count());
   for (std::uint32_t q = 0; q < quads_.size(); ++q) {
-    for (std::uint8_t k = 0; k < 4; ++k) {
+    for (std::uint8_t k = 0; k < quads_[q].side_count(); ++k) {
       const std::vector<Run> runs = runs_of(q, k);
       for (const Run& run : runs) add_use(q, k, run, runs.size() == 1);
     }
@@ -74,7 +103,7 @@ void BrepLayout::add_use(std::uint32_t quad, std::uint8_t side, const Run& run, 
   const auto& corners = quads_[quad].corners;
   Segment& segment = segments_[run.segment];
   if (segment.ends[0] == none) {
-    std::array<std::uint32_t, 2> ends{corners[side], corners[(side + 1) % 4]};
+    std::array<std::uint32_t, 2> ends{corners[side], corners[quads_[quad].after(side)]};
     if (run.reversed) std::swap(ends[0], ends[1]);
     if (run.length < 1) {
       const std::uint32_t middle = ends_of(surface_, EdgeId(quads_[quad].sides[side].number))[1];
@@ -195,25 +224,14 @@ BrepLayout::Neighbour BrepLayout::across(std::uint32_t quad, std::size_t side) c
 // Rectangles that grow, strip by strip.
 struct BrepLayout::Packing {
   const BrepLayout& layout;
-  const std::function<const TensorPiece*(std::uint32_t)>& polynomial;
+  const Continues& continues;
   std::vector<std::uint32_t> face_of = std::vector<std::uint32_t>(layout.quads_.size(), none);
-  std::vector<Point3> origins = std::vector<Point3>(layout.quads_.size());
 
-  // The quad across a side of a placed one, if both are polynomials whose lattices overlap.
+  // The quad across a side of a placed one, if it continues this one.
   [[nodiscard]] PlacedQuad beside(const PlacedQuad& placed, std::size_t side) const {
     const auto own = static_cast<std::size_t>((side + placed.turn) % 4);
     const Neighbour other = layout.across(placed.quad, own);
-    if (other.quad == none) return {none, 0};
-    const TensorPiece *p = polynomial(placed.quad), *q = polynomial(other.quad);
-    if (p == nullptr || q == nullptr) return {none, 0};
-    const TensorPiece a = turned(*p, (own + 3) % 4), b = turned(*q, (other.side + 1u) % 4);
-    const Vector3 apart = origins[other.quad] - origins[placed.quad];
-    const double tolerance = 0x1p-46 * (a.largest + b.largest + max_abs(apart));
-    for (std::size_t j = 0; j <= a.degree; ++j) {
-      for (std::size_t i = 0; i < a.degree; ++i) {
-        if (max_abs(a.at(i + 1, j) - (b.at(i, j) + apart)) > tolerance) return {none, 0};
-      }
-    }
+    if (other.quad == none || !continues({placed.quad, own}, {other.quad, other.side})) return {none, 0};
     return {other.quad, static_cast<std::uint8_t>((other.side + 8 - side - 2) % 4)};
   }
 
@@ -267,7 +285,7 @@ struct BrepLayout::Packing {
   [[nodiscard]] FaceDraft grown_from(std::uint32_t quad, std::uint32_t face) {
     FaceDraft draft{1, 1, {{quad, 0}}};
     face_of[quad] = face;
-    if (polynomial(quad) == nullptr) return draft;
+    if (layout.quads_[quad].side_count() == 3) return draft;
     for (std::size_t failed = 0, side = 0; failed < 4; side = (side + 1) % 4) {
       const std::vector<PlacedQuad> next = strip(draft, side, face);
       if (next.empty()) {
@@ -282,14 +300,8 @@ struct BrepLayout::Packing {
   }
 };
 
-std::vector<FaceDraft> BrepLayout::packed(
-    const std::function<const TensorPiece*(std::uint32_t)>& polynomial) const {
-  Packing packing{*this, polynomial};
-  Patch patch;
-  for (std::uint32_t q = 0; q < quads_.size(); ++q) {
-    surface_.patch(quads_[q].patch, patch);
-    packing.origins[q] = patch.origin;
-  }
+std::vector<FaceDraft> BrepLayout::packed(const Continues& continues) const {
+  Packing packing{*this, continues};
   std::vector<FaceDraft> faces;
   for (std::uint32_t q = 0; q < quads_.size(); ++q) {
     if (packing.face_of[q] == none)
@@ -311,7 +323,8 @@ std::vector<FaceJoint> BrepLayout::joined(const std::vector<FaceDraft>& faces) c
   std::vector<std::uint32_t> ends(name_count());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const FaceDraft& draft = faces[f];
-    for (std::uint8_t side = 0; side < 4; ++side) {
+    const auto side_count = static_cast<std::uint8_t>(quads_[draft.at(0, 0).quad].side_count());
+    for (std::uint8_t side = 0; side < side_count; ++side) {
       double begin = 0;
       const std::size_t count = side % 2 == 0 ? draft.width : draft.height;
       for (std::size_t k = 0; k < count; ++k) {
@@ -388,6 +401,18 @@ std::vector<LoopSide> BrepLayout::loops(const std::vector<FaceDraft>& faces,
   return loops;
 }
 
+std::optional<Vector3> BrepLayout::normal_on_side(const Use& use, double t) const {
+  const SurfaceQuad& quad = quads_[use.quad];
+  if (!quad.pair) {
+    const std::array<Place, 4> places{{{0, 0, t, 0}, {0, 0, 1, t}, {0, 0, 1 - t, 1}, {0, 0, 0, 1 - t}}};
+    return LimitEvaluator(surface_.patch(quad.patch)).frame(places[use.side]).normal;
+  }
+  const bool lower = use.side < 2 || !quad.pair->upper;
+  const std::size_t side = (lower ? use.side + quad.pair->turn : use.side - 1u + quad.pair->upper_turn) % 3;
+  const std::array<Place, 3> places{{{0, 0, t, 0}, {0, 0, 1 - t, t}, {0, 0, 0, 1 - t}}};
+  return LimitEvaluator(surface_.patch(lower ? quad.patch : *quad.pair->upper)).frame(places[side]).normal;
+}
+
 bool BrepLayout::smooth(const FaceJoint& joint, double length) const {
   const std::vector<Run> runs = runs_of(joint.quad, joint.side);
   const Segment& segment = segments_[runs[0].segment];
@@ -398,9 +423,7 @@ bool BrepLayout::smooth(const FaceJoint& joint, double length) const {
     // The middle of the segment, which is a quarter of the way along a side of twice its length.
     double t = 0.5;
     if (!use.whole) t = (runs[0].segment % 2 == 0) != use.reversed ? 0.25 : 0.75;
-    const std::array<Place, 4> places{{{0, 0, t, 0}, {0, 0, 1, t}, {0, 0, 1 - t, 1}, {0, 0, 0, 1 - t}}};
-    LimitEvaluator evaluator(surface_.patch(quads_[use.quad].patch));
-    normals[k] = evaluator.frame(places[use.side]).normal;
+    normals[k] = normal_on_side(use, t);
   }
   return normals[0] && normals[1] && dot(*normals[0], *normals[1]) > 0 &&
          snug::length(cross(*normals[0], *normals[1])) < same_normal;

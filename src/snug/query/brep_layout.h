@@ -4,20 +4,31 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <snug/mesh/disjoint_sets.h>
+#include <snug/query/triangle_pairs.h>
 #include <snug/spline/quad_pieces.h>
 #include <snug/surface/patch_sides.h>
 
 namespace snug {
 
-/// A quad of a surface: two patches.
+/// A quad of a surface: two patches. Of a triangular scheme a pair of triangles, or a single one, which has three sides.
 struct SurfaceQuad {
   PatchId patch;                         ///< the first of them
   std::array<std::uint32_t, 4> corners;  ///< names, as LimitSurface::corner_names() has them
   std::array<PatchSide, 4> sides;        ///< from corner k to the next one
   bool half = false;                     ///< its sides are halves: it comes from a first split
+  std::optional<TrianglePair> pair{};    ///< of a triangular scheme
+
+  [[nodiscard]] std::size_t side_count() const { return pair && !pair->upper ? 3 : 4; }
+  [[nodiscard]] std::size_t after(std::size_t side) const { return (side + 1) % side_count(); }
+};
+/// A side of a quad.
+struct QuadSide {
+  std::uint32_t quad;
+  std::size_t side;
 };
 
 /// A quad in a face: side k of the face's is side (k + turn) mod 4 of its own.
@@ -72,9 +83,10 @@ class BrepLayout {
   /// Which of some quads have other depths since the last call.
   [[nodiscard]] std::vector<std::uint32_t> take_changed(const std::vector<std::uint32_t>& among);
 
-  /// Large rectangles of smoothly joined quads that are one polynomial each; every other quad by itself.
-  [[nodiscard]] std::vector<FaceDraft> packed(
-      const std::function<const TensorPiece*(std::uint32_t)>& polynomial) const;
+  /// Do the surface and its parameters continue smoothly from one side to the other?
+  using Continues = std::function<bool(const QuadSide& a, const QuadSide& b)>;
+  /// Large rectangles of quads that continue each other; every other quad by itself.
+  [[nodiscard]] std::vector<FaceDraft> packed(const Continues& continues) const;
   /// All edges of faces; and the loops made of these, face by face.
   [[nodiscard]] std::vector<FaceJoint> joined(const std::vector<FaceDraft>& faces) const;
   [[nodiscard]] static std::vector<LoopSide> loops(const std::vector<FaceDraft>& faces,
@@ -105,6 +117,9 @@ class BrepLayout {
   };
   struct Packing;
 
+  void add_quads_of_triangles();
+  void connect();
+  [[nodiscard]] std::optional<Vector3> normal_on_side(const Use& use, double t) const;
   [[nodiscard]] std::vector<Run> runs_of(std::uint32_t quad, std::size_t side) const;
   void add_use(std::uint32_t quad, std::uint8_t side, const Run& run, bool whole);
   [[nodiscard]] std::uint32_t side_name(const PatchSide& side) const;

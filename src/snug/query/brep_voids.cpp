@@ -30,7 +30,9 @@ Sampled sampled(std::span<const Brep::Face> faces) {
     for (std::size_t j = 0; j + 1 < v.size(); ++j) {
       for (std::size_t i = 0; i + 1 < u.size(); ++i) {
         const std::size_t a = i + u.size() * j, b = a + 1, c = b + u.size(), d = a + u.size();
+        if (face.triangle() && j > i) continue;
         result.triangles.push_back({points[a], points[b], points[c]});
+        if (face.triangle() && j == i) continue;
         result.triangles.push_back({points[a], points[c], points[d]});
       }
     }
@@ -60,6 +62,7 @@ bool around(const Sampled& shell, const Point3& point) {
   return std::fabs(sum) > 3.14159265358979;  // half of the full angle, which is twice as much
 }
 
+// About the diagonal; a face over one triangle about the other one, so that its half stays where it is.
 void turn_over(Brep::Face& face) {
   SplineSurface& s = face.surface;
   const std::size_t columns = s.columns(), rows = s.rows();
@@ -72,22 +75,31 @@ void turn_over(Brep::Face& face) {
   std::swap(s.u_knots, s.v_knots);
   std::reverse(face.loop.begin(), face.loop.end());
   for (Brep::Side& side : face.loop) side.reversed = !side.reversed;
+  if (!face.triangle()) return;
+  std::reverse(s.points.begin(), s.points.end());
+  for (std::vector<double>* knots : {&s.u_knots, &s.v_knots}) {
+    std::reverse(knots->begin(), knots->end());
+    for (double& knot : *knots) knot = 1 - knot;
+  }
+  std::rotate(face.loop.begin(), face.loop.begin() + 1, face.loop.end());
 }
 
 }  // namespace
 
-void find_voids(Brep& brep) {
+void find_voids(Brep& brep, const WorkMonitor& monitor) {
   std::vector<std::uint32_t> closed;
   std::vector<Sampled> samples;
   for (std::uint32_t s = 0; s < brep.shells.size(); ++s) {
     const Brep::Shell& shell = brep.shells[s];
     if (!shell.closed) continue;
+    monitor.checkpoint();
     closed.push_back(s);
     samples.push_back(sampled({brep.faces.data() + shell.begin, brep.faces.data() + shell.end}));
   }
   // The shells around each, the outermost first.
   std::vector<std::vector<std::size_t>> around_it(closed.size());
   for (std::size_t i = 0; i < closed.size() && closed.size() <= most_shells; ++i) {
+    monitor.checkpoint();
     for (std::size_t k = 0; k < closed.size(); ++k) {
       if (k != i && within(samples[k].box, samples[i].box) &&
           around(samples[k], samples[i].triangles.front()[0]))

@@ -237,6 +237,57 @@ double distance_bound(const SplineCurve& a, const SplineCurve& b) {
   return largest;
 }
 
+SplineCurve diagonal_of(const SplineSurface& surface) {
+  if (surface.degree == 1) return {1, surface.u_knots, {surface.points.front(), surface.points.back()}};
+  SplineCurve curve{surface.degree, surface.u_knots, {surface.points.front()}};
+  const std::vector<double> breaks = breaks_of(surface.u_knots);
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    const std::size_t span = span_at(surface.u_knots, 3, breaks[k]);
+    const Point3 origin = surface.points[span - 3 + surface.columns() * (span - 3)];
+    const TensorPiece b =
+        bezier_on(span_of(surface, span, span, origin), {breaks[k], breaks[k + 1], breaks[k], breaks[k + 1]});
+    curve.points.push_back(origin + (b.at(1, 0) + (b.at(0, 1) - b.at(0, 0))));
+    curve.points.push_back(origin + (b.at(2, 3) + (b.at(3, 2) - b.at(3, 3))));
+  }
+  curve.points.push_back(surface.points.back());
+  return curve;
+}
+
+// Bezier points of degree 2 d on both sides: of the product, and of the curve times (s + t)^d.
+double distance_from_diagonal(const SplineSurface& surface, const SplineCurve& curve) {
+  const std::size_t d = surface.degree;
+  SNUG_EXPECT(curve.degree == d);
+  const SplineSurface sheet = swept(curve);
+  const auto choose = [](std::size_t n, std::size_t k) {
+    double result = 1;
+    for (std::size_t i = 0; i < k; ++i)
+      result = result * static_cast<double>(n - i) / static_cast<double>(i + 1);
+    return result;
+  };
+  double largest = 0;
+  const std::vector<double> breaks = breaks_of(surface.u_knots);
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    const double begin = breaks[k], end = breaks[k + 1];
+    const std::size_t span = span_at(surface.u_knots, d, begin), own = span_at(curve.knots, d, begin);
+    const Point3 origin = curve.points[own - d];
+    const TensorPiece a = bezier_on(span_of(surface, span, span, origin), {begin, end, begin, end}),
+                      b = bezier_on(span_of(sheet, own, d, origin), {begin, end, 0, 1});
+    double here = 0;
+    for (std::size_t n = 0; n <= 2 * d; ++n) {
+      Vector3 off;
+      for (std::size_t i = n > d ? n - d : 0; i <= std::min(n, d); ++i) {
+        const double share = choose(d, i) * choose(d, n - i) / choose(2 * d, n);
+        off = off + share * (a.at(i, n - i) - b.at(i, 0));
+      }
+      here = std::max(here, length_sq(off));
+    }
+    const double rounding = a.error + b.error + gamma_bound(16) * (a.largest + b.largest);
+    largest =
+        std::max(largest, enlarged(enlarged(std::sqrt(enlarged(here))) + spatial_error(enlarged(rounding))));
+  }
+  return largest;
+}
+
 std::vector<double> breaks_of(const std::vector<double>& knots) {
   std::vector<double> breaks = knots;
   breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());

@@ -37,6 +37,13 @@ struct FacePart {
 /// Upper bound of their distance over the parameters of `a`, rounding included.
 /// Requires:  `b` has them, too; differences of knots are exact.
 [[nodiscard]] double distance_bound(const SplineCurve& a, const SplineCurve& b);
+
+/// The diagonal of a surface over a unit square, from (0, 0) to (1, 1), as a curve of the surface's degree, if it is one.
+/// Requires:  degree 1 or 3, the same knots in u and v, of degree 3 twice each.
+[[nodiscard]] SplineCurve diagonal_of(const SplineSurface& surface);
+/// Upper bound of the distance between a curve and the diagonal of such a surface, at equal parameters, rounding included.
+/// Requires:  the same degree; knots of the curve are knots of the surface.
+[[nodiscard]] double distance_from_diagonal(const SplineSurface& surface, const SplineCurve& curve);
 /// The distinct knots.
 [[nodiscard]] std::vector<double> breaks_of(const std::vector<double>& knots);
 

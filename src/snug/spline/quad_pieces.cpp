@@ -147,18 +147,6 @@ class TipFit {
   TensorPiece bezier_ = bezier_piece(TensorPiece::max_degree);
 };
 
-// Both lie in the hulls of their points.
-double hull_distance(const ControlNet& net, const TensorPiece& bezier) {
-  double largest = 0;
-  for (const kernels::NetPoint& p : net.points) {
-    const Vector3 point{p[0], p[1], p[2]};
-    for (std::size_t i = 0; i < bezier.count(); ++i)
-      largest = std::max(largest, length_sq(point - bezier.points[i]));
-  }
-  const double rounding = net.error + bezier.error + unit_roundoff * (net.largest + bezier.largest);
-  return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
-}
-
 // An upper bound; not refined any more once it is at most `sufficient`.
 double tip_distance(std::span<const PartNet> nets, const TensorPiece& bezier, std::size_t degree,
                     double sufficient) {
@@ -171,7 +159,7 @@ double tip_distance(std::span<const PartNet> nets, const TensorPiece& bezier, st
   const auto farther = [](const Part& a, const Part& b) { return a.bound < b.bound; };
   std::vector<Part> parts;
   const auto add = [&](ControlNet net, const TensorPiece& here, unsigned level) {
-    const double bound = hull_distance(net, here);
+    const double bound = distance_bound(net, here);
     parts.push_back({std::move(net), here, bound, level});
     std::push_heap(parts.begin(), parts.end(), farther);
   };

@@ -205,4 +205,16 @@ double distance_bound(const TensorPiece& a, const TensorPiece& b) {
   return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
 }
 
+// Both lie in the hulls of their points.
+double distance_bound(const ControlNet& net, const TensorPiece& bezier) {
+  double largest = 0;
+  for (const kernels::NetPoint& p : net.points) {
+    const Vector3 point{p[0], p[1], p[2]};
+    for (std::size_t i = 0; i < bezier.count(); ++i)
+      largest = std::max(largest, length_sq(point - bezier.points[i]));
+  }
+  const double rounding = net.error + bezier.error + unit_roundoff * (net.largest + bezier.largest);
+  return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
+}
+
 }  // namespace snug

@@ -67,4 +67,8 @@ struct CornerJet {
 /// Requires:  Bezier points of the same degree.
 [[nodiscard]] double distance_bound(const TensorPiece& a, const TensorPiece& b);
 
+/// Upper bound of the distance of any two points of a net's piece and of a polynomial.
+/// Requires:  Bezier points.
+[[nodiscard]] double distance_bound(const ControlNet& net, const TensorPiece& bezier);
+
 }  // namespace snug

@@ -1,0 +1,209 @@
+// Faces over triangles: distances against limit points at the same parameters, which evaluation finds by its own way down, and
+// against B-splines by the recursion of their basis functions. Pairs are drawn across smooth and sharp edges alike.
+
+#include <snug/spline/hermite_face.h>
+#include <snug/surface/limit_surface.h>
+
+#include <gtest/gtest.h>
+#include <oracle/spline_twin.h>
+#include <testing/counts.h>
+#include <testing/tagged.h>
+
+#include <cmath>
+#include <random>
+
+namespace snug::hermite_face_test {
+namespace {
+
+double length_of(const std::array<long double, 3>& a, const Point3& b) {
+  return static_cast<double>(
+      std::sqrt((a[0] - b.x) * (a[0] - b.x) + (a[1] - b.y) * (a[1] - b.y) + (a[2] - b.z) * (a[2] - b.z)));
+}
+
+// A triangle, or two with a common edge, the diagonal.
+struct Drawn {
+  PatchId lower;
+  unsigned turn;
+  std::optional<PatchId> upper;
+  unsigned upper_turn;
+};
+Drawn drawn(const LimitSurface& surface, PatchId p, std::mt19937_64& random) {
+  const auto turn = static_cast<unsigned>(random() % 3);
+  Drawn result{p, turn, {}, 0};
+  const HalfEdge diagonal = surface.topology().first_of(FaceId(p.index())) + (turn + 2) % 3;
+  const HalfEdge twin = surface.topology().twin(diagonal);
+  if (twin == no_half_edge || random() % 4 == 0) return result;
+  const PatchId other(surface.topology().face_of(twin).index());
+  if (other == p || !surface.has_patch(other)) return result;
+  result.upper = other;
+  result.upper_turn = twin % 3;
+  return result;
+}
+
+// Of a point of a square: its patch, and there the parameters.
+std::pair<PatchId, Place> place_of(const Drawn& d, double u, double v) {
+  const bool lower = v <= u;
+  const std::array<double, 3> w = lower ? std::array{1 - u, u - v, v} : std::array{1 - v, u, v - u};
+  std::array<double, 3> own{};
+  for (unsigned k = 0; k < 3; ++k) own[(k + (lower ? d.turn : d.upper_turn)) % 3] = w[k];
+  return {lower ? d.lower : *d.upper, {0, 0, own[1], own[2]}};
+}
+
+TEST(hermite_face, is_as_near_to_the_limit_as_it_says) {
+  std::mt19937_64 random(9);
+  std::size_t pairs = 0, singles = 0, reached = 0, near = 0, all = 0;
+  for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::loop, 43)) {
+    SCOPED_TRACE(c.name + ", " + testing::text_of(c.rules));
+    const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                               std::make_shared<BoundsCache>());
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (!surface.has_patch(PatchId(p)) || random() % testing::share(4) != 0) continue;
+      const Drawn d = drawn(surface, PatchId(p), random);
+      const Patch lower = surface.patch(d.lower);
+      std::vector<FaceSquare> squares;
+      squares.push_back({{lower, d.turn, SquareHalf::lower}, {}});
+      std::vector<HermiteCurve> border;
+      const auto add_side = [&](const Patch& patch, unsigned corner) {
+        TriangleTree tree(patch, corner, SquareHalf::lower);
+        border.push_back(curve_near(tree, 0.02));
+      };
+      add_side(lower, d.turn);
+      add_side(lower, d.turn + 1);
+      if (d.upper) {
+        const Patch upper = surface.patch(*d.upper);
+        squares[0].upper.emplace(upper, d.upper_turn, SquareHalf::upper);
+        add_side(upper, d.upper_turn + 1);
+        add_side(upper, d.upper_turn + 2);
+      } else {
+        add_side(lower, d.turn + 2);
+      }
+      HermiteFace face(1, 1, std::move(squares), border);
+      reached += face.refine(random() % 4 == 0 ? 0.002 : 0.05, 150) ? 1 : 0;
+      const std::vector<FacePart> parts = face.parts();
+      const SplineSurface spline = spline_of(parts, 3);
+      const double bound = distance_bound(parts, spline);
+      ++(d.upper ? pairs : singles);
+      double farthest = 0;
+      for (int k = 0; k < 40; ++k) {
+        // Multiples of 2^-20; every other one near a corner, a side or the diagonal.
+        const auto unit = [&] { return std::ldexp(static_cast<double>(random() % ((1u << 20) + 1)), -20); };
+        const auto snapped = [](double t) { return std::ldexp(std::round(std::ldexp(t, 20)), -20); };
+        double u = unit(), v = unit();
+        if (k % 2 == 1) u = snapped(std::pow(u, 6));
+        if (k % 4 == 3) v = snapped(std::pow(v, 6));
+        if (k % 8 == 6) v = snapped(u * (1 - 0.001 * unit()));
+        if (random() % 2 == 0) u = 1 - u;
+        if (random() % 2 == 0) v = 1 - v;
+        if (!d.upper && v > u) std::swap(u, v);
+        const auto [patch, at] = place_of(d, u, v);
+        LimitEvaluator evaluator(surface.patch(patch));
+        BoundedPoint limit;
+        evaluator.points({&at, 1}, {&limit, 1});
+        const double apart = length_of(
+            oracle::spline_point(spline.degree, spline.u_knots, spline.v_knots, spline.points, u, v),
+            limit.position);
+        ASSERT_LE(apart, bound + 2 * limit.error) << u << ' ' << v;
+        farthest = std::max(farthest, apart);
+      }
+      ++all;
+      if (bound < 1e-13 || farthest > 0.1 * bound) ++near;
+      if (d.upper) continue;
+      // The diagonal is the third side, from (1, 1) to (0, 0).
+      const HermiteCurve third = border[2].reversed();
+      const SplineCurve diagonal = diagonal_of(spline);
+      EXPECT_LE(distance_from_diagonal(spline, diagonal), 1e-12);
+      for (int k = 0; k <= 16; ++k) {
+        const double t = k / 16.0;
+        const auto there =
+            oracle::spline_point(spline.degree, spline.u_knots, spline.v_knots, spline.points, t, t);
+        EXPECT_LE(length_of(there, third.origin + third.at(t).point), 1e-12);
+      }
+      SplineCurve moved = diagonal;
+      moved.points[random() % moved.points.size()].y += 0.01;
+      double away = 0;
+      for (int k = 0; k <= 64; ++k) {
+        const double t = k / 64.0;
+        std::array<long double, 3> point{};
+        const auto basis = oracle::spline_basis(moved.knots, moved.degree, t);
+        for (std::size_t i = 0; i < basis.size(); ++i) {
+          point[0] += basis[i] * moved.points[i].x;
+          point[1] += basis[i] * moved.points[i].y;
+          point[2] += basis[i] * moved.points[i].z;
+        }
+        const auto there =
+            oracle::spline_point(spline.degree, spline.u_knots, spline.v_knots, spline.points, t, t);
+        away = std::max(away, length_of(there, {static_cast<double>(point[0]), static_cast<double>(point[1]),
+                                                static_cast<double>(point[2])}));
+      }
+      EXPECT_GE(distance_from_diagonal(spline, moved), away);
+    }
+  }
+  EXPECT_GT(pairs, testing::share(150));
+  EXPECT_GT(singles, testing::share(50));
+  EXPECT_GT(reached, all / 2);
+  EXPECT_GT(near, all / 4);  // bounds that say something
+}
+
+// A quartic on half of a square against a bicubic: the bound is at least the distance at any parameter, and no more than a few times it.
+TEST(hermite_face, distances_of_quartics_and_bicubics_are_bounded) {
+  std::mt19937_64 random(10);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (std::uint64_t number = 0; number < testing::number_of("SNUG_HERMITE", 300); ++number) {
+    const SquareHalf half = number % 2 == 0 ? SquareHalf::lower : SquareHalf::upper;
+    QuarticTriangle quartic;
+    TensorPiece bicubic = bezier_piece(3);
+    for (Vector3& p : quartic.points) p = {unit(random), unit(random), unit(random)};
+    for (std::size_t k = 0; k < 16; ++k) bicubic.points[k] = {unit(random), unit(random), unit(random)};
+    quartic.largest = 1;
+    take_largest(bicubic);
+    const auto point = [&](double u, double v) {
+      const bool lower = half == SquareHalf::lower;
+      const double w[] = {lower ? 1 - u : 1 - v, lower ? u - v : u, lower ? v : v - u};
+      Vector3 p;
+      for (std::size_t j = 0; j <= 4; ++j) {
+        for (std::size_t i = 0; i + j <= 4; ++i) {
+          const double ways[] = {1, 1, 2, 6, 24};
+          const double share =
+              24 / (ways[i] * ways[j] * ways[4 - i - j]) * std::pow(w[0], static_cast<double>(4 - i - j)) *
+              std::pow(w[1], static_cast<double>(i)) * std::pow(w[2], static_cast<double>(j));
+          p = p + share * quartic.points[bezier_index(4, i, j)];
+        }
+      }
+      return p;
+    };
+    const double bound = distance_bound(quartic, bicubic, half);
+    double farthest = 0;
+    for (int k = 0; k <= 12; ++k) {
+      for (int l = 0; l + k <= 12; ++l) {
+        const double u = half == SquareHalf::lower ? (k + l) / 12.0 : k / 12.0,
+                     v = half == SquareHalf::lower ? l / 12.0 : (k + l) / 12.0;
+        farthest = std::max(farthest, length(point(u, v) - value(bicubic, u, v)));
+      }
+    }
+    EXPECT_GE(bound * (1 + 1e-12), farthest);
+    EXPECT_LE(bound, 4 * farthest);
+    // On a rectangle, in the triangle or on its sides.
+    const auto sixteenth = [&](std::uint64_t low, std::uint64_t high) {
+      return static_cast<double>(low + random() % (high - low + 1)) / 16;
+    };
+    ParameterBox box;
+    box.u0 = sixteenth(1, 15);
+    box.u1 = sixteenth(static_cast<std::uint64_t>(16 * box.u0) + 1, 16);
+    box.v1 = sixteenth(1, static_cast<std::uint64_t>(16 * box.u0));
+    box.v0 = sixteenth(0, static_cast<std::uint64_t>(16 * box.v1) - 1);
+    if (half == SquareHalf::upper) box = {box.v0, box.v1, box.u0, box.u1};
+    const double here = distance_bound(quartic, bicubic, half, box);
+    double away = 0;
+    for (int k = 0; k <= 8; ++k) {
+      for (int l = 0; l <= 8; ++l) {
+        const double u = box.u0 + (box.u1 - box.u0) * k / 8, v = box.v0 + (box.v1 - box.v0) * l / 8;
+        away = std::max(away, length(point(u, v) - value(bicubic, k / 8.0, l / 8.0)));
+      }
+    }
+    EXPECT_GE(here * (1 + 1e-12), away);
+    EXPECT_LE(here, 4 * away);
+  }
+}
+
+}  // namespace
+}  // namespace snug::hermite_face_test
