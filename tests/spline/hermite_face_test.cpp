@@ -205,5 +205,54 @@ TEST(hermite_face, distances_of_quartics_and_bicubics_are_bounded) {
   }
 }
 
+// Of a polynomial that is both, a + b u + c v + d u v, nothing but rounding is left.
+TEST(hermite_face, equal_polynomials_have_no_distance) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (std::uint64_t number = 0; number < testing::number_of("SNUG_HERMITE_EQUAL", 40); ++number) {
+    const SquareHalf half = number % 2 == 0 ? SquareHalf::lower : SquareHalf::upper;
+    std::array<Vector3, 4> c;
+    for (Vector3& x : c) x = {unit(random), unit(random), unit(random)};
+    // Its polar form at four points; at three pairs of parameters of a bicubic it is itself at their means.
+    const auto form = [&](const std::array<double, 4>& u, const std::array<double, 4>& v) {
+      double product = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t l = 0; l < 4; ++l) product += k == l ? 0 : u[k] * v[l] / 12;
+      }
+      return c[0] + ((u[0] + u[1] + u[2] + u[3]) / 4) * c[1] + ((v[0] + v[1] + v[2] + v[3]) / 4) * c[2] +
+             product * c[3];
+    };
+    QuarticTriangle quartic;
+    quartic.largest = 4;
+    const std::array<double, 3> cu{0, 1, half == SquareHalf::lower ? 1.0 : 0.0},
+        cv{0, half == SquareHalf::lower ? 0.0 : 1.0, 1};
+    for (std::size_t j = 0; j <= 4; ++j) {
+      for (std::size_t i = 0; i + j <= 4; ++i) {
+        std::array<double, 4> u{}, v{};
+        for (std::size_t k = 0; k < 4; ++k) {
+          const std::size_t corner = k < i ? 1 : k < i + j ? 2 : 0;
+          u[k] = cu[corner];
+          v[k] = cv[corner];
+        }
+        quartic.points[bezier_index(4, i, j)] = form(u, v);
+      }
+    }
+    TensorPiece bicubic = bezier_piece(3);
+    for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double u = static_cast<double>(i) / 3, v = static_cast<double>(j) / 3;
+        bicubic.at(i, j) = c[0] + u * c[1] + v * c[2] + (u * v) * c[3];
+      }
+    }
+    take_largest(bicubic);
+    EXPECT_LE(distance_bound(quartic, bicubic, half), 1e-12);
+    const ParameterBox box = half == SquareHalf::lower ? ParameterBox{0.5, 0.875, 0.125, 0.5}
+                                                       : ParameterBox{0.125, 0.5, 0.5, 0.875};
+    EXPECT_LE(distance_bound(quartic, bezier_on(bicubic, box), half, box), 1e-12);
+    bicubic.at(1, 2).x += 0.01;
+    EXPECT_GE(distance_bound(quartic, bezier_on(bicubic, box), half, box), 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace snug::hermite_face_test

@@ -44,7 +44,6 @@ class NetQuarters {
   [[nodiscard]] LatticeNet lattice(std::size_t k) const {
     return {points_, step_.pieces[k].lattice, largest_, error_};
   }
-  /// Requires:  !regular(k).
   [[nodiscard]] ControlNet net(std::size_t k) const;
 
  private:

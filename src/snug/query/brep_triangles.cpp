@@ -61,7 +61,7 @@ class TriangleBrepMaker : public BrepMaker {
         monitor_.checkpoint();
         if (owners[e].quad == UINT32_MAX) continue;
         TriangleTree tree = tree_along(owners[e]);
-        put_curve(owners[e], curve_near(tree, share_of_curves * error_));
+        put_curve(owners[e], curve_near(tree, share_of_curves * reached_));
       }
       monitor_.report(0.2 * static_cast<double>(end) / static_cast<double>(owners.size()));
     });
@@ -143,9 +143,9 @@ class TriangleBrepMaker : public BrepMaker {
     return border;
   }
 
-  // If the spans of all faces exceed the budget, a larger error is kept.
+  // If the spans of all faces exceed the budget, the error grows.
   void prepare() override {
-    for (;; reached_ *= budget_factor, spent_ = true) {
+    for (;;) {
       faces_.assign(drafts_.size(), {});
       std::atomic<std::uint64_t> spans{0};
       std::atomic<std::size_t> count{0};
@@ -163,7 +163,10 @@ class TriangleBrepMaker : public BrepMaker {
         count += end - begin;
         monitor_.report(0.2 + 0.5 * static_cast<double>(count) / static_cast<double>(drafts_.size()));
       });
-      if (spans <= budget_ || reached_ > 1) return;
+      if (spans <= budget_) return;
+      reached_ *= budget_factor;
+      spent_ = true;
+      fit_curves();
     }
   }
 

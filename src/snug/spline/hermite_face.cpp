@@ -11,6 +11,8 @@ namespace {
 
 // How far an inner Bezier point at an extraordinary corner is moved, in lengths of the shorter side there.
 constexpr double most_inner_move = 0.25;
+// Least share of the chord that the Bezier point next to an extraordinary end is away from it.
+constexpr double least_side = 0.1;
 // Finer knots are not made: 2^-20 of an edge.
 constexpr double least_span = 0x1p-20;
 // Shares of an interval at which a curve is compared.
@@ -28,30 +30,35 @@ void sort_unique(std::vector<double>& list) {
 
 // Derivatives at extraordinary ends, such that the cubic next to them passes through limit points; then into the tangent plane.
 void fit_ends(HermiteCurve& curve, TriangleTree& tree, const std::array<bool, 2>& known) {
-  const auto into_plane = [&](std::size_t end, Vector3& along) {
-    if (const auto normal = tree.normal(end)) along = along - dot(*normal, along) * *normal;
-  };
   const std::size_t n = curve.nodes.size();
+  // From the Bezier point next to an end; `next`: the other end of the cubic.
+  const auto put = [&](std::size_t end, HermiteCurve::Node& here, const HermiteCurve::Node& next,
+                       Vector3 bezier) {
+    Vector3 side = bezier - here.point, chord = next.point - here.point;
+    if (const auto normal = tree.normal(end)) {
+      side = side - dot(*normal, side) * *normal;
+      chord = chord - dot(*normal, chord) * *normal;
+    }
+    // At a vertex of valence 3 the parameters' derivative vanishes; the curve's is not to.
+    const double size = length_sq(chord), along = dot(side, chord);
+    if (along < least_side * size) side = side + (least_side - along / size) * chord;
+    here.along = (3 / (next.t - here.t)) * side;
+  };
   if (n == 2 && !known[0] && !known[1]) {
     HermiteCurve::Node &a = curve.nodes[0], &b = curve.nodes[1];
     const Vector3 p = 27.0 * tree.limit(0.333251953125, 0) - 8.0 * a.point - b.point,
                   q = 27.0 * tree.limit(0.666748046875, 0) - a.point - 8.0 * b.point;
-    a.along = 3.0 * ((1.0 / 18) * (2.0 * p - q) - a.point);
-    b.along = 3.0 * (b.point - (1.0 / 18) * (2.0 * q - p));
-    into_plane(0, a.along);
-    into_plane(1, b.along);
+    put(0, a, b, (1.0 / 18) * (2.0 * p - q));
+    put(1, b, a, (1.0 / 18) * (2.0 * q - p));
     return;
   }
   for (std::size_t end = 0; end < 2; ++end) {
     if (known[end]) continue;
     HermiteCurve::Node &here = curve.nodes[end == 0 ? 0 : n - 1], &next = curve.nodes[end == 0 ? 1 : n - 2];
-    const double length = next.t - here.t;  // negative at the second end
-    // The other end's derivative as a Bezier point, and ours such that the middle is the limit's.
-    const Vector3 handle = next.point - (length / 3) * next.along;
-    const Vector3 own =
-        (1.0 / 3) * (8.0 * tree.limit(0.5 * (here.t + next.t), 0) - here.point - next.point) - handle;
-    here.along = (3 / length) * (own - here.point);
-    into_plane(end, here.along);
+    // The other end's derivative as a Bezier point; the length is negative at the second end.
+    const Vector3 handle = next.point - ((next.t - here.t) / 3) * next.along;
+    put(end, here, next,
+        (1.0 / 3) * (8.0 * tree.limit(0.5 * (here.t + next.t), 0) - here.point - next.point) - handle);
   }
 }
 

@@ -67,15 +67,46 @@ void halve(TensorPiece& bezier, bool along_u, bool second) {
   }
 }
 
-bool is_half(double low, double high) { return (low == 0 && high == 0.5) || (low == 0.5 && high == 1); }
-
-// The part of Bezier points over halves or all of each direction; false for other parts.
-bool take_halves(TensorPiece& bezier, const ParameterBox& box) {
-  const bool all_u = box.u0 == 0 && box.u1 == 1, all_v = box.v0 == 0 && box.v1 == 1;
-  if ((!all_u && !is_half(box.u0, box.u1)) || (!all_v && !is_half(box.v0, box.v1))) return false;
-  if (!all_u) halve(bezier, true, box.u0 > 0);
-  if (!all_v) halve(bezier, false, box.v0 > 0);
+// The part of Bezier points in a direction by halves of halves, at most four times: no more roundings than polar forms have. False
+// for parts that are none.
+bool take_halves(TensorPiece& bezier, bool along_u, double low, double high) {
+  std::array<bool, 4> second{};
+  std::size_t count = 0;
+  for (; low != 0 || high != 1; ++count) {
+    if (count == second.size() || (low < 0.5 && high > 0.5)) return false;
+    second[count] = low >= 0.5;
+    low = 2 * low - (second[count] ? 1 : 0);
+    high = 2 * high - (second[count] ? 1 : 0);
+  }
+  for (std::size_t k = 0; k < count; ++k) halve(bezier, along_u, second[k]);
   return true;
+}
+
+// Those of a lattice.
+std::array<double, 2 * most> uniform_knots(std::size_t degree) {
+  std::array<double, 2 * most> knots{};
+  for (std::size_t k = 0; k < 2 * degree; ++k)
+    knots[k] = static_cast<double>(k) - static_cast<double>(degree - 1);
+  return knots;
+}
+
+// Bezier points of a span of a uniform B-spline, in one direction.
+void take_uniform(TensorPiece& piece, bool along_u) {
+  const std::size_t d = piece.degree, width = d + 1, step = along_u ? 1 : width, across = along_u ? width : 1;
+  for (std::size_t line = 0; line < width; ++line) {
+    const auto at = [&](std::size_t k) -> Vector3& { return piece.points[line * across + k * step]; };
+    if (d == 2) {
+      at(0) = 0.5 * (at(0) + at(1));
+      at(2) = 0.5 * (at(1) + at(2));
+    } else if (d == 3) {
+      constexpr double third = 1.0 / 3, sixth = 1.0 / 6;
+      const Vector3 p = at(1), q = at(2);
+      at(0) = sixth * (at(0) + (4.0 * p + q));
+      at(1) = third * (2.0 * p + q);
+      at(2) = third * (p + 2.0 * q);
+      at(3) = sixth * (p + (4.0 * q + at(3)));
+    }
+  }
 }
 
 }  // namespace
@@ -97,8 +128,7 @@ TensorPiece bezier_piece(std::size_t degree) {
 TensorPiece tensor_piece(const LatticeNet& net, std::size_t degree) {
   TensorPiece piece;
   piece.degree = degree;
-  for (std::size_t k = 0; k < 2 * degree; ++k)
-    piece.u[k] = piece.v[k] = static_cast<double>(k) - static_cast<double>(degree - 1);
+  piece.u = piece.v = uniform_knots(degree);
   for (std::size_t i = 0; i < piece.count(); ++i) {
     const kernels::NetPoint& p = net.points[net.lattice[i]];
     piece.points[i] = {p[0], p[1], p[2]};
@@ -136,20 +166,26 @@ CornerJet corner_jet(const TensorPiece& bezier, std::size_t x, std::size_t y) {
 TensorPiece bezier_on(const TensorPiece& piece, const ParameterBox& box) {
   const std::size_t d = piece.degree;
   TensorPiece half = bezier_piece(d), result = half;
-  const bool bezier = piece.u == half.u && piece.v == half.v;
-  if (bezier && box == ParameterBox{}) return piece;
-  result.points = piece.points;
-  half.v = piece.v;
-  if (!bezier || !take_halves(result, box)) {
-    std::array<double, most> at{};
-    const auto between = [&](double low, double high) {
-      return [&, low, high](std::size_t i) {
-        for (std::size_t k = 0; k < d; ++k) at[k] = k < d - i ? low : high;
-        return std::span<const double>(at.data(), d);
-      };
+  if (piece.u == half.u && piece.v == half.v && box == ParameterBox{}) return piece;
+  std::array<double, most> at{};
+  const auto between = [&](double low, double high) {
+    return [&, low, high](std::size_t i) {
+      for (std::size_t k = 0; k < d; ++k) at[k] = k < d - i ? low : high;
+      return std::span<const double>(at.data(), d);
     };
-    change_direction(piece, true, between(box.u0, box.u1), half);
-    change_direction(half, false, between(box.v0, box.v1), result);
+  };
+  result.points = piece.points;
+  const bool whole = box == ParameterBox{};
+  for (const bool along_u : {true, false}) {
+    const std::array<double, 2 * most>& knots = along_u ? piece.u : piece.v;
+    const double low = along_u ? box.u0 : box.v0, high = along_u ? box.u1 : box.v1;
+    if (whole && knots == uniform_knots(d)) {
+      take_uniform(result, along_u);
+    } else if (knots != half.u || !take_halves(result, along_u, low, high)) {
+      TensorPiece from = result;
+      (along_u ? from.u : from.v) = knots;
+      change_direction(from, along_u, between(low, high), result);
+    }
   }
   take_largest(result);
   result.error =
