@@ -150,8 +150,8 @@ struct SelfContact {
 ///
 /// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Facets (triangles of flat,
 ///            plane convex faces of bilinear, such faces that are sharp all around) are compared exactly: touching is found, also
-///            where vertices coincide but are not one. On others, places where the surface is not an immersion (spikes, folded
-///            creases, collapsed patches, what is not manifold) are `undecided`, never `clear`; so are vertices
+///            where vertices coincide but are not one. On others, places where the surface is not an immersion (folded creases,
+///            collapsed patches, edges that are not manifold) are `undecided`, never `clear`; so are vertices
 ///            of very many faces (docs/self_contact.md).
 /// Budget:    1,000,000 stars and pairs of pieces tested, about; 100 bytes each.
 /// Errors:    InputError: (value) for more than 20 levels, for `within` not positive and finite, and for a radius that is not finite, is

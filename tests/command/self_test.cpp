@@ -94,20 +94,20 @@ TEST_F(self_command, ends_with_five_where_nothing_is_decided) {
   EXPECT_EQ(json::parse(outcome.out)["verdict"], "undecided");
 }
 
-// A cone of eight triangles with a sharp tip.
+// A cone of 128 triangles with a sharp tip.
 TEST(self_places, names_the_vertex_that_is_in_the_way) {
   const TemporaryFolder folder;
   std::string text = "v 0 0 1\n", faces;
-  for (int k = 0; k < 8; ++k) {
-    text +=
-        "v " + std::to_string(std::cos(k * M_PI / 4)) + ' ' + std::to_string(std::sin(k * M_PI / 4)) + " 0\n";
-    faces += "f 1 " + std::to_string(k + 2) + ' ' + std::to_string((k + 1) % 8 + 2) + '\n';
+  for (int k = 0; k < 128; ++k) {
+    const double angle = k * M_PI / 64;
+    text += "v " + std::to_string(std::cos(angle)) + ' ' + std::to_string(std::sin(angle)) + " 0\n";
+    faces += "f 1 " + std::to_string(k + 2) + ' ' + std::to_string((k + 1) % 128 + 2) + '\n';
   }
   faces += "t corner 1/1/0 0 10\n";
   std::ofstream(folder.file("fan.obj")) << text << faces;
   const Outcome outcome = run_snug({"self-contact", folder.file("fan.obj"), "--scheme", "loop"});
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_NE(outcome.out.find("vertex 0 of 8 faces"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("vertex 0 of 128 faces"), std::string::npos) << outcome.out;
 }
 
 }  // namespace

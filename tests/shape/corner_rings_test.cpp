@@ -116,6 +116,110 @@ void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
   }
 }
 
+using Quad = __float128;
+
+// What grows fastest under a step, but for constants, in some 30 digits: its row and column, by powers.
+struct FastestPair {
+  std::vector<Quad> row, column;
+};
+FastestPair fastest_pair(const Stencils& step) {
+  const std::size_t n = step.row_count();
+  std::vector<Quad> a(n * n, 0);
+  for (std::size_t r = 0; r < n; ++r) {
+    const Stencils::Row row = step.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) a[r * n + row.sources[i]] += row.weights[i];
+  }
+  // Without constants: they come with one row, whichever is taken off.
+  std::vector<Quad> power = a;
+  for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = 0; c < n; ++c) power[r * n + c] -= a[c];
+  }
+  for (int i = 0; i < 14; ++i) {
+    std::vector<Quad> square(n * n, 0);
+    Quad largest = 0;
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t c = 0; c < n; ++c) square[r * n + c] += power[r * n + k] * power[k * n + c];
+      }
+      for (std::size_t c = 0; c < n; ++c)
+        largest = std::max(largest, square[r * n + c] < 0 ? -square[r * n + c] : square[r * n + c]);
+    }
+    for (Quad& x : square) x /= largest;
+    power = std::move(square);
+  }
+  const auto at = static_cast<std::size_t>(
+      std::max_element(power.begin(), power.end(), [](Quad x, Quad y) { return x * x < y * y; }) -
+      power.begin());
+  FastestPair pair;
+  Quad product = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    pair.row.push_back(power[at / n * n + i]);
+    pair.column.push_back(power[i * n + at % n]);
+    product += pair.row[i] * pair.column[i];
+  }
+  for (Quad& x : pair.column) x /= product;
+  return pair;
+}
+
+Quad extent_of(const std::vector<Quad>& x) {
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  return (*high - *low) / 2;
+}
+
+// Levels against exact ones: from values that are off, the more so to what the largest row sees, by one amount or hardly at all.
+void expect_levels_hold(const RingDecay& decay, std::mt19937_64& random) {
+  const Stencils step = decay.kind->children()[decay.corner].stencils();
+  const std::size_t n = step.row_count();
+  if (n > 24) return;
+  FastestPair pair;
+  if (decay.larger) pair = fastest_pair(step);
+  for (const double amount : {0.0, 0x1p-40}) {
+    for (int trial = 0; trial < 4; ++trial) {
+      std::vector<Quad> exact(n);
+      for (Quad& x : exact) x = unit(random);
+      // Weights in doubles have not quite the sum 1: constants would leak into the rest.
+      const auto take_off = [&] {
+        const auto [low, high] = std::minmax_element(exact.begin(), exact.end());
+        const Quad middle_of_all = (*low + *high) / 2;
+        for (Quad& x : exact) x -= middle_of_all;
+        if (!decay.larger) return;
+        Quad seen = 0;
+        for (std::size_t i = 0; i < n; ++i) seen += pair.row[i] * exact[i];
+        for (std::size_t i = 0; i < n; ++i) exact[i] -= seen * pair.column[i];
+      };
+      take_off();
+      std::vector<double> values(n);
+      std::vector<Quad> off(n);
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool up = trial == 0 && decay.larger ? pair.row[i] > 0 : random() % 2 == 0;
+        values[i] = static_cast<double>(exact[i]) + (up ? amount : -amount);
+        off[i] = values[i] - exact[i];
+      }
+      RingValues rings(decay, step, values, static_cast<double>(extent_of(off)));
+      const std::size_t count = std::min<std::size_t>(rings.count(), 150);
+      rings.descend_to(count);
+      for (std::size_t level = 0; level < count; ++level) {
+        const RingValues::Level& own = rings.level(level);
+        for (std::size_t i = 0; i < n; ++i) off[i] = own.values[i] - exact[i];
+        EXPECT_LE(static_cast<double>(extent_of(off)), own.off) << "level " << level << ", trial " << trial;
+        if (amount == 0) {
+          EXPECT_LT(own.off, 1e-8 * std::max(own.largest, 1.0)) << "level " << level;
+        }
+        std::vector<Quad> next(n, 0);
+        for (std::size_t r = 0; r < n; ++r) {
+          const Stencils::Row row = step.row(r);
+          for (std::size_t i = 0; i < row.sources.size(); ++i)
+            next[r] += row.weights[i] * exact[row.sources[i]];
+          next[r] /= middle(decay.least);
+        }
+        exact = std::move(next);
+        take_off();
+      }
+      if (::testing::Test::HasFailure()) return;
+    }
+  }
+}
+
 KindKey key_of(Scheme scheme) {
   const SchemeRules& rules = rules_of(scheme);
   KindKey key;
@@ -154,6 +258,7 @@ TEST(corner_rings, holds_all_levels_inside) {
       ++found;
       EXPECT_TRUE(limit->conformal());
       for (int i = 0; i < 5; ++i) expect_holds(limit->decay(), random);
+      expect_levels_hold(limit->decay(), random);
     }
   }
   RecordProperty("kinds", static_cast<int>(found));
@@ -187,6 +292,7 @@ TEST(corner_rings, holds_all_levels_at_boundaries) {
         EXPECT_FALSE(limit->conformal());
         EXPECT_EQ(limit->dominant(), faces < 3 ? 0U : 1U);
         for (int i = 0; i < 5; ++i) expect_holds(limit->decay(), random);
+        expect_levels_hold(limit->decay(), random);
       }
     }
   }
@@ -252,6 +358,7 @@ std::size_t expect_all_hold(const ControlMesh& mesh, Scheme scheme, std::mt19937
       continue;
     }
     for (int i = 0; i < 5; ++i) expect_holds(*decay, random);
+    expect_levels_hold(*decay, random);
   }
   return seen.size();
 }
@@ -285,6 +392,17 @@ TEST(corner_rings, holds_all_levels_by_rows_that_are_found) {
     octahedron.add_face(std::vector<VertexId>{b, a, VertexId(5)});
   }
   EXPECT_GT(expect_all_hold(octahedron, Scheme::midedge, random), 0U);
+}
+
+// Sharp vertices inside whose edges are smooth: values that have nothing of what grows fastest, and such that have.
+TEST(corner_rings, holds_all_levels_at_spikes) {
+  std::mt19937_64 random(4);
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    for (const std::uint32_t n : {3U, 4U, 5U, 6U, 7U, 8U, 12U, 16U}) {
+      EXPECT_GT(expect_all_hold(fan(n, scheme == Scheme::loop, false, 0, true), scheme, random), 0U)
+          << name_of(scheme) << " spike of " << n;
+    }
+  }
 }
 
 // Numbers that are whole multiples of 2^-12 are taken for exact ones. So no weight that is not rational may look so: those of Loop's

@@ -747,6 +747,156 @@ TEST(star, of_a_dual_scheme_that_turns_over_in_the_limit_is_never_injective) {
   EXPECT_GT(turned, 300);
 }
 
+// A vertex inside that is sharp by itself: a cusp, seen along it.
+oracle::TaggedMesh cone(std::uint32_t n, bool triangles, double turns, double steep) {
+  const auto height = [steep](double x, double y) { return -steep * std::hypot(x, y); };
+  oracle::TaggedMesh mesh = triangles ? disc(n, turns, height) : quad_disc(n, height);
+  mesh.corners.push_back({0, 10});
+  return mesh;
+}
+
+TEST(star, at_a_spike_is_injective) {
+  for (const bool triangles : {true, false}) {
+    for (const std::uint32_t n : {3U, 4U, 5U, 6U, 7U, 8U, 9U, 12U, 16U, 24U, 32U}) {
+      for (const double steep : {0.2, 1.0, 3.0}) {
+        auto mesh = cone(n, triangles, 1, steep);
+        for (auto& p : mesh.points) p = {p[0] + 0.3 * p[2], 0.7 * p[1] - 0.2 * p[0], p[2] + 0.1 * p[0]};
+        const LimitSurface surface = surface_of(mesh, triangles ? Scheme::loop : Scheme::catmark);
+        for (unsigned level = 2; level <= 4; ++level) {
+          const CentreStar star = star_at_centre(surface, level);
+          EXPECT_TRUE(certainly_injective(star.sectors, star.closed))
+              << (triangles ? "triangles " : "quads ") << n << ", " << steep << ", level " << level;
+        }
+      }
+    }
+  }
+}
+
+// By samples of normals against the spike's own direction, down to the last ones that can be told.
+TEST(star, at_a_spike_that_turns_over_is_never_injective) {
+  std::mt19937_64 random(11);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  int injective = 0, turned = 0;
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(200)); ++trial) {
+    const bool triangles = random() % 2 == 0;
+    const std::uint32_t n = 3 + static_cast<std::uint32_t>(random() % 8);
+    auto mesh = cone(n, triangles, triangles && trial % 8 == 0 && n > 4 ? 2 : 1,
+                     std::array{0.3, 1.0, 4.0}[random() % 3]);
+    const double amount = std::array{0.1, 0.5, 1.0, 2.0}[random() % 4];
+    const std::size_t moved = random() % 2 == 0 ? 1 + (triangles ? n : 2 * n) : mesh.points.size();
+    for (std::size_t v = 1; v < moved; ++v) {
+      for (double& x : mesh.points[v]) x += amount * unit();
+    }
+    const LimitSurface surface = surface_of(mesh, triangles ? Scheme::loop : Scheme::catmark);
+    for (unsigned level = 1; level <= 3; level += 2) {
+      const CentreStar star = star_at_centre(surface, level);
+      const bool proved = certainly_injective(star.sectors, star.closed);
+      // Its direction: from the vertex to the middle of what is around it, far down.
+      Vector3 along;
+      for (const auto& [patch, centre] : star.sectors) {
+        Patch deep = *patch;
+        deep.path = {};
+        for (int k = 0; k < 24; ++k) deep = split(deep, static_cast<unsigned>(centre));
+        const auto corners = limit_corners(deep);
+        along = along + (corners[(centre + 1) % 3] - corners[centre]);
+      }
+      bool up = false, down = false;
+      for (const auto& [patch, centre] : star.sectors) {
+        for (int step = 0; step <= 14; ++step) {
+          for (int i = 0; i <= 8; ++i) {
+            std::array<double, 3> at{};
+            const double away = std::ldexp(1, -step);
+            at[centre] = 1 - away;
+            at[(centre + 1) % 3] = away * i / 8;
+            at[(centre + 2) % 3] = away * (8 - i) / 8;
+            const LimitFrame frame = limit_frame(*patch, {at[1], at[2]});
+            const double side = frame.normal ? dot(*frame.normal, normalized(along)) : 0;
+            if (std::fabs(side) > 1e-4) (side > 0 ? up : down) = true;
+          }
+        }
+      }
+      EXPECT_FALSE(proved && up && down)
+          << "trial " << trial << ", " << (triangles ? "triangles " : "quads ") << n;
+      injective += proved ? 1 : 0;
+      turned += up && down ? 1 : 0;
+    }
+  }
+  std::printf("injective %d, turned %d\n", injective, turned);
+  EXPECT_GT(injective, static_cast<int>(testing::fewer(80)));
+  EXPECT_GT(turned, static_cast<int>(testing::fewer(80)));
+}
+
+// A fold whose one side is much larger than the other: its mean normal is that of the large one.
+TEST(star, at_a_fold_of_two_sizes_is_injective) {
+  for (const double degrees : {60.0, 100.0, 120.0, 140.0}) {
+    for (const double small : {1.0, 0.1, 0.01}) {
+      auto mesh = disc(6, 1, [](double, double) { return 0.0; });
+      const double angle = degrees * std::numbers::pi / 180;
+      for (auto& p : mesh.points) {
+        if (p[1] > 1e-9) p = {p[0], small * p[1] * std::cos(angle), small * p[1] * std::sin(angle)};
+      }
+      for (std::uint32_t ring = 0; ring < 3; ++ring) {
+        for (const std::uint32_t i : {0U, 3U}) {
+          const std::uint32_t here = 1 + ring * 6 + i;
+          mesh.creases.push_back({ring == 0 ? 0 : here - 6, here, 10});
+        }
+      }
+      EXPECT_TRUE(injective_at_centre(mesh, 2)) << degrees << " degrees, " << small;
+    }
+  }
+}
+
+// Two bent quads at a vertex, against their halves of 8 by 8 parts.
+TEST(star, sectors_that_meet_only_at_the_vertex_do_so) {
+  std::mt19937_64 random(12);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  int proved = 0, crossing = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0.5, 0.25, 2});
+    for (int quad = 0; quad < 2; ++quad) {
+      const Vector3 along{unit(), unit(), unit()};
+      for (int k = 0; k < 3; ++k) {
+        const double wide = 0.8;
+        mesh.points.push_back(
+            {0.5 + along.x + wide * unit(), 0.25 + along.y + wide * unit(), 2 + along.z + wide * unit()});
+      }
+    }
+    mesh.polygons = {{0, 1, 2, 3}, {0, 4, 5, 6}};
+    const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
+    for (std::uint32_t a = 0; a < 2; ++a) {
+      for (std::uint32_t b = 2; b < 4; ++b) {
+        const Patch first = surface.patch(PatchId(a)), second = surface.patch(PatchId(b));
+        // Halves begin at opposite corners of the quad.
+        const StarSector of_a{&first, a == 0 ? 0U : 2U}, of_b{&second, b == 2 ? 0U : 2U};
+        ASSERT_TRUE(stays_in_place(of_a) && stays_in_place(of_b));
+        if (!certainly_meet_only_at_vertex(of_a, of_b)) continue;
+        ++proved;
+        // Seen from the vertex no direction of the one is one of the other.
+        constexpr int parts = 8;
+        std::vector<std::vector<Vector3>> rays(2);
+        for (const auto& [sector, of] : {std::pair{&of_a, 0}, std::pair{&of_b, 1}}) {
+          for (int i = 0; i <= parts; ++i) {
+            for (int j = 0; i + j <= parts; ++j) {
+              std::array<double, 3> at{static_cast<double>(parts - i - j) / parts,
+                                       static_cast<double>(i) / parts, static_cast<double>(j) / parts};
+              if (at[sector->centre] == 1) continue;
+              const Point3 p =
+                  limit_point(*sector->patch, {at[1], at[2]}).from(sector->patch->origin).position;
+              rays[static_cast<std::size_t>(of)].push_back(normalized(p - Point3{0.5, 0.25, 2}));
+            }
+          }
+        }
+        for (const Vector3& r : rays[0]) {
+          for (const Vector3& q : rays[1]) crossing += dot(r, q) > 1 - 1e-12 ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(crossing, 0);
+  EXPECT_GT(proved, 300);
+}
+
 TEST(star, that_is_a_point_or_a_line_is_never_injective) {
   auto point = disc(7, 1, [](double, double) { return 0.0; });
   auto line = point;

@@ -352,5 +352,184 @@ TEST(self, verdicts_in_a_plane_are_those_of_refined_meshes) {
   EXPECT_GT(counts["clear, not folded"], 10 * trials);
 }
 
+// A random choice.
+template <class T>
+T one_of(std::initializer_list<T> all, std::mt19937_64& random) {
+  return all.begin()[random() % all.size()];
+}
+
+// Any of the shapes, perhaps with a border, tags of every sort, and two vertices made one.
+struct Body {
+  oracle::TaggedMesh mesh;
+  oracle::Rules rules;
+  Scheme scheme;
+  std::string name;
+};
+Body random_body(const std::vector<Shape>& all, std::mt19937_64& random) {
+  Body body;
+  const Shape& shape = all[random() % all.size()];
+  const double amount = one_of({0.0, 0.15, 0.3, 0.6, 0.8, 1.5, 3.0}, random);
+  body.mesh = shaken(shape, amount, random);
+  oracle::TaggedMesh& mesh = body.mesh;
+  const bool triangles =
+      std::all_of(mesh.polygons.begin(), mesh.polygons.end(), [](const auto& f) { return f.size() == 3; });
+  body.scheme = triangles
+                    ? one_of({Scheme::loop, Scheme::catmark, Scheme::midedge, Scheme::doo_sabin}, random)
+                    : one_of({Scheme::catmark, Scheme::catmark, Scheme::midedge, Scheme::doo_sabin}, random);
+  const bool primal = body.scheme == Scheme::loop || body.scheme == Scheme::catmark;
+  body.rules.scheme =
+      body.scheme == Scheme::loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+  body.rules.boundary = one_of({oracle::Boundary::edge_and_corner, oracle::Boundary::edge_only}, random);
+  body.rules.chaikin = random() % 4 == 0;
+  // The dual schemes have no surface at borders.
+  const std::size_t removed = primal ? one_of({0, 0, 1, 2, 4}, random) : 0;
+  for (std::size_t k = 0; k < removed && mesh.polygons.size() > 2; ++k)
+    mesh.polygons.erase(mesh.polygons.begin() + static_cast<std::ptrdiff_t>(random() % mesh.polygons.size()));
+  if (primal) {
+    const unsigned crease = one_of({0u, 12u, 6u, 2u, 1u}, random), corner = one_of({0u, 0u, 8u, 3u}, random);
+    for (const auto& face : mesh.polygons) {
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const double sharpness = one_of({10.0, 10.0, 2.5, 0.6}, random);
+        if (crease > 0 && random() % crease == 0)
+          mesh.creases.push_back({face[k], face[(k + 1) % face.size()], sharpness});
+        if (corner > 0 && random() % (corner * 3) == 0) mesh.corners.push_back({face[k], sharpness});
+      }
+    }
+    if (random() % 6 == 0) {
+      // A vertex without a face in common takes the place of another one.
+      const auto a = static_cast<std::uint32_t>(random() % mesh.points.size()),
+                 b = static_cast<std::uint32_t>(random() % mesh.points.size());
+      const bool apart = std::none_of(mesh.polygons.begin(), mesh.polygons.end(), [&](const auto& f) {
+        const auto near = [&](std::uint32_t v) { return std::find(f.begin(), f.end(), v) != f.end(); };
+        return near(a) && near(b);
+      });
+      for (auto& face : mesh.polygons) {
+        for (std::uint32_t& v : face) {
+          if (apart && a != b && v == a) v = b;
+        }
+      }
+    }
+  }
+  body.name = shape.mesh.name + " " + name_of(body.scheme) + " by " + std::to_string(amount) + ", without " +
+              std::to_string(removed) + ", " + std::to_string(mesh.creases.size()) + " creases, " +
+              std::to_string(mesh.corners.size()) + " corners";
+  return body;
+}
+
+// Bent quads around a vertex, one or two fans of them, from even to crumpled: neither has a tangent plane there, and pairs that have the
+// vertex alone in common meet anywhere else.
+TEST(self, verdicts_of_bent_quads_at_a_vertex_are_those_of_refined_ones) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1)) * 200;
+  std::mt19937_64 random(6);
+  std::map<std::string, int> counts;
+  for (int trial = 0; trial < trials; ++trial) {
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0, 0, 0});
+    const std::size_t fans = 1 + random() % 2;
+    const double high = one_of({0.3, 1.0, 2.0}, random), amount = one_of({0.1, 0.5, 1.5}, random);
+    for (std::size_t f = 0; f < fans; ++f) {
+      const auto n = static_cast<std::uint32_t>(3 + random() % 4);
+      const bool closed = random() % 3 != 0;
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      const std::uint32_t around = closed ? 2 * n : 2 * n + 1;
+      const double wide = closed ? 2 : one_of({0.7, 1.3, 1.8}, random),
+                   waves = one_of({0.0, 1.0, 2.0, 3.0}, random),
+                   up = fans == 2 ? (f == 0 ? 1.0 : -1.0) * one_of({0.2, 0.7}, random) : 0;
+      for (std::uint32_t i = 0; i < around; ++i) {
+        const double angle = std::numbers::pi * wide * i / (2 * n), size = i % 2 == 0 ? 1 : 1.4;
+        const auto noise = [&] { return amount * (unit(random) - 0.5); };
+        mesh.points.push_back({size * std::cos(angle) + noise(), size * std::sin(angle) + noise(),
+                               size * (up + high * std::sin(waves * angle)) + noise()});
+      }
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t a = 2 * i, b = (2 * i + 2) % around;
+        mesh.polygons.push_back({0, first + a, first + a + 1, first + b});
+        std::rotate(mesh.polygons.back().begin(),
+                    mesh.polygons.back().begin() + static_cast<std::ptrdiff_t>(random() % 4),
+                    mesh.polygons.back().end());
+      }
+    }
+    const SelfContact found = self_contact(Surface(testing::control_mesh(mesh), {.scheme = Scheme::bilinear}),
+                                           {}, {.max_splits = 20'000});
+    // Into 16 by 16 quads; places are named by what they are made of.
+    oracle::TaggedMesh fine;
+    std::map<oracle::Point, std::uint32_t> names;
+    constexpr std::uint32_t parts = 16;
+    for (const auto& face : mesh.polygons) {
+      const auto at = [&](std::uint32_t i, std::uint32_t j) {
+        // Sides from the lower to the higher end: the same numbers from both faces.
+        const double u = i / static_cast<double>(parts), v = j / static_cast<double>(parts);
+        oracle::Point p{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto& [a, b, c, d] = std::array{mesh.points[face[0]][k], mesh.points[face[1]][k],
+                                                mesh.points[face[2]][k], mesh.points[face[3]][k]};
+          p[k] =
+              std::round(0x1p40 * ((1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * d + u * c))) * 0x1p-40 +
+              0.0;
+        }
+        const auto [place, is_new] = names.try_emplace(p, static_cast<std::uint32_t>(fine.points.size()));
+        if (is_new) fine.points.push_back(p);
+        return place->second;
+      };
+      for (std::uint32_t i = 0; i < parts; ++i) {
+        for (std::uint32_t j = 0; j < parts; ++j)
+          fine.polygons.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+    const bool crossing = crosses(fine, 0.002);
+    ++counts[std::to_string(fans) + " fans, " + name_of(found.verdict) +
+             (crossing ? ", twin crosses" : ", twin does not")];
+    if (crossing) {
+      EXPECT_NE(found.verdict, SelfVerdict::clear) << "trial " << trial;
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  for (const char* const fans : {"1", "2"}) {
+    EXPECT_GT(counts[std::string(fans) + " fans, clear, twin does not"], trials / 20);
+    EXPECT_GT(counts[std::string(fans) + " fans, intersecting, twin crosses"], trials / 80);
+  }
+}
+
+// SNUG_SELF_BODIES: how many. SNUG_SELF_FIRST: the number of the first one.
+TEST(self, verdicts_with_all_tags_are_those_of_refined_meshes) {
+  const std::uint64_t count = testing::number_of("SNUG_SELF_BODIES", 16),
+                      first = testing::number_of("SNUG_SELF_FIRST", 1);
+  std::map<std::string, std::uint64_t> counts;
+  const std::vector<Shape> all = shapes();
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    std::mt19937_64 random(number);
+    const Body body = random_body(all, random);
+    SelfContact found;
+    try {
+      found =
+          self_contact(Surface(testing::control_mesh(body.mesh, body.rules),
+                               {.scheme = body.scheme, .boundary = testing::options_of(body.rules).boundary}),
+                       {}, {.max_splits = 20'000});
+    } catch (const InputError&) {
+      ++counts["refused"];
+      continue;
+    }
+    const bool dual = body.scheme == Scheme::midedge || body.scheme == Scheme::doo_sabin;
+    const oracle::TaggedMesh fine =
+        dual ? refined(body.mesh, body.scheme) : oracle::refine(body.mesh, body.rules, 4);
+    const bool crossing = crosses(fine, dual ? 0.005 : 0.0015);
+    ++counts[std::string(name_of(found.verdict)) + (crossing ? ", twin crosses" : ", twin does not")];
+    if (crossing) {
+      EXPECT_NE(found.verdict, SelfVerdict::clear) << body.name << ", number " << number;
+    } else if (found.verdict == SelfVerdict::intersecting && !found.pairs[0].touching && !crosses(fine, 0)) {
+      ++counts["intersecting, twin does not at all"];
+      std::printf("number %llu: %s\n", static_cast<unsigned long long>(number), body.name.c_str());
+    }
+    if (found.verdict == SelfVerdict::undecided && testing::number_of("SNUG_SELF_PRINT", 0) > 0)
+      std::printf("undecided, number %llu: %s\n", static_cast<unsigned long long>(number), body.name.c_str());
+  }
+  for (const auto& [what, number] : counts) {
+    std::printf("%s: %llu\n", what.c_str(), static_cast<unsigned long long>(number));
+    RecordProperty(what, static_cast<int>(number));
+  }
+  EXPECT_GT(4 * counts["clear, twin does not"], count);
+  EXPECT_GT(16 * counts["intersecting, twin crosses"], count);
+}
+
 }  // namespace
 }  // namespace snug::self_test

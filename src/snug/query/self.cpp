@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -116,6 +117,85 @@ class PairComparison {
   Found found_;
   int attempts_ = 0;
   bool first_ = false;  // Is it the first piece that is to be opened?
+};
+
+// Of pairs of pieces at a vertex those that have nothing in common but what both name: a part of a fan is injective, or a plane is between
+// both.
+class VertexPairs {
+ public:
+  // `live`: sorted; other pairs are of no interest.
+  VertexPairs(PieceCache& pieces, const LevelComplex& complex, const std::vector<NamePair>& live)
+      : pieces_(pieces), complex_(complex), live_(live) {}
+
+  [[nodiscard]] std::set<NamePair> proved(const LevelStar& star) {
+    if (star.fan) {
+      try_parts(star);
+    } else {
+      for (const LevelStar& fan : complex_.fans(star)) {
+        if (!fan.fan) continue;
+        if (is_injective(fan)) {
+          add_all(fan);
+        } else {
+          try_parts(fan);
+        }
+      }
+    }
+    for (const auto& a : star.sectors) {
+      for (const auto& b : star.sectors) {
+        if (a.piece < b.piece && is_open({a.piece, b.piece}) && holds(a, b))
+          found_.insert({a.piece, b.piece});
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] bool is_injective(const LevelStar& fan) const {
+    return certainly_injective(sectors_of(pieces_, fan), fan.closed);
+  }
+  [[nodiscard]] bool is_open(const NamePair& pair) const {
+    return std::binary_search(live_.begin(), live_.end(), pair) && !found_.contains(pair);
+  }
+  // Of each two sectors, and of each with itself.
+  template <class Visit>
+  static void each_pair(const LevelStar& fan, const Visit& visit) {
+    for (std::size_t i = 0; i < fan.sectors.size(); ++i) {
+      for (std::size_t k = 0; k <= i; ++k) visit(std::minmax(fan.sectors[i].piece, fan.sectors[k].piece));
+    }
+  }
+  void add_all(const LevelStar& fan) {
+    each_pair(fan, [&](const NamePair& pair) { found_.insert(pair); });
+  }
+  // From each sector on as far as it holds.
+  void try_parts(const LevelStar& fan) {
+    const std::size_t count = fan.sectors.size();
+    for (std::size_t first = 0; first < count; ++first) {
+      LevelStar part{{}, false, true};
+      const std::size_t most = fan.closed ? count - 1 : count - first;
+      while (part.sectors.size() < most) {
+        part.sectors.push_back(fan.sectors[(first + part.sectors.size()) % count]);
+        bool any = false;
+        each_pair(part, [&](const NamePair& pair) { any = any || is_open(pair); });
+        if (!any) continue;
+        if (!is_injective(part)) break;
+        add_all(part);
+      }
+    }
+  }
+  [[nodiscard]] bool holds(const LevelStar::Sector& a, const LevelStar::Sector& b) const {
+    LevelStar both{{a, b}};
+    if (common_corners(complex_, a.piece, b.piece).size() == 1) {
+      const std::vector<StarSector> sectors = sectors_of(pieces_, both);
+      return certainly_meet_only_at_vertex(sectors[0], sectors[1]);
+    }
+    complex_.put_in_order(both);
+    return both.fan && is_injective(both);
+  }
+
+  PieceCache& pieces_;
+  const LevelComplex& complex_;
+  const std::vector<NamePair>& live_;
+  std::set<NamePair> found_;
 };
 
 class SelfSearch {
@@ -259,24 +339,40 @@ class SelfSearch {
     for (const NamePair& pair : live) {
       for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) corners.push_back(v);
     }
-    MarkedVertices proved(std::move(corners));
+    MarkedVertices proved(std::move(corners)), single = proved;
     if (proved.count() > budget_) {
       budget_spent_ = true;
       return;
     }
-    for_each_with_pieces(
-        model_, proved.count(), run_.threads, monitor_,
-        [&](PieceCache& pieces, std::size_t i) { proved.mark(i, star_holds(pieces, proved[i], level)); });
+    for_each_with_pieces(model_, proved.count(), run_.threads, monitor_,
+                         [&](PieceCache& pieces, std::size_t i) {
+                           const LevelStar star = complex_.star(proved[i], level);
+                           const std::vector<StarSector> sectors = sectors_of(pieces, star);
+                           const bool holds = star.fan && certainly_injective(sectors, star.closed);
+                           proved.mark(i, holds);
+                           single.mark(i, !holds && (!star.fan || stays_in_place(sectors.front())));
+                         });
     spend(proved.count());
     answer_.stars += proved.count();
     std::erase_if(live, [&](const NamePair& pair) {
       return proved.any(common_corners(complex_, pair.first, pair.second));
     });
+    if (!live.empty()) drop_proved_pairs(live, single, level);
   }
 
-  [[nodiscard]] bool star_holds(PieceCache& pieces, const LevelVertex& vertex, unsigned level) const {
-    const LevelStar star = complex_.star(vertex, level);
-    return star.fan && certainly_injective(sectors_of(pieces, star), star.closed);
+  // At vertices whose stars are not proved as a whole, since there is no tangent plane or no fan: pairs of pieces one by one.
+  void drop_proved_pairs(std::vector<NamePair>& live, const MarkedVertices& single, unsigned level) {
+    std::vector<LevelVertex> at;
+    for (std::size_t i = 0; i < single.count(); ++i) {
+      if (single.any({single[i]})) at.push_back(single[i]);
+    }
+    std::vector<std::set<NamePair>> proved(at.size());
+    for_each_with_pieces(model_, at.size(), run_.threads, monitor_, [&](PieceCache& pieces, std::size_t i) {
+      proved[i] = VertexPairs(pieces, complex_, live).proved(complex_.star(at[i], level));
+    });
+    std::set<NamePair> all;
+    for (std::set<NamePair>& part : proved) all.merge(part);
+    std::erase_if(live, [&](const NamePair& pair) { return all.contains(pair); });
   }
 
   // The children's pairs: those with a common corner, and `far` the others.

@@ -61,6 +61,14 @@ std::optional<Corner> corner_of(const LimitSurface& surface, const Stencils::Row
   return Corner{*own, {at, others[0], others[1]}};
 }
 
+// Is there sharpness that decays? Of hardly any a limit point is nearly that of a curve, and not exactly.
+bool has_semi_sharp(const Kind& kind) {
+  if (kind.key().plain()) return false;
+  const Sharpness& all = kind.key().around->sharpness;
+  return std::any_of(all.edges.begin(), all.edges.end(), is_semi_sharp) ||
+         std::any_of(all.vertices.begin(), all.vertices.end(), is_semi_sharp);
+}
+
 // The normal of the plane that all control points are in, if they are; about.
 std::optional<Vector3> plane_of(const LimitSurface& surface) {
   std::vector<const Point3*> points;
@@ -112,6 +120,7 @@ std::vector<PieceContact> coincident_vertices(const LimitSurface& surface) {
     const PatchId patch(static_cast<std::uint32_t>(p));
     if (!surface.has_patch(patch) || surface.after_first_split(patch)) continue;
     const Kind& kind = surface.kind(patch);
+    if (has_semi_sharp(kind)) continue;
     surface.control_vertices(patch, names);
     const Patch whole = surface.patch(patch);
     for (std::size_t k = 0; k < 3; ++k) {

@@ -44,7 +44,8 @@ RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector
   centre(first.values);
   first.off += take_off_largest(first);
   first.largest = largest_of(first.values);
-  all_off_ = growing_off_ = first.off;
+  all_off_ = first.off;
+  if (decay.larger) first.off = off_of(0);
   levels_.reserve(64);
   levels_.push_back(std::move(first));
   std::vector<double> parts;
@@ -100,12 +101,17 @@ void RingValues::descend() {
   next.largest = largest_of(next.values);
   const double off = rounding_ * (before.largest / least) + taken_off;
   all_off_ = enlarged(all_off_ + off);
-  growing_off_ = enlarged(growing_off_ + off);
-  // Chains grow as the number of steps does.
-  const double seen = decay.seen + decay.chain_seen * static_cast<double>(levels_.size());
-  next.off =
-      enlarged(decay.most * (1 + decay.seen) * all_off_ + seen * growing_off_ + decay.seen * largest_off_);
+  next.off = off_of(levels_.size());
   levels_.push_back(std::move(next));
+}
+
+// What values are off after so many steps, each of which was off by its share of all. What was taken off is not only the larger
+// eigenvalue's part of the exact values, which is none, but also that of all this.
+double RingValues::off_of(std::size_t level) const {
+  const RingDecay& decay = *decay_;
+  // Chains grow as the number of steps does.
+  const double seen = decay.seen + decay.chain_seen * static_cast<double>(level);
+  return enlarged((decay.most * (1 + decay.seen) + seen) * all_off_ + decay.seen * largest_off_);
 }
 
 RingValues::Level RingValues::difference(std::size_t level, unsigned order) const {
@@ -149,8 +155,11 @@ void RingValues::add_up(std::vector<double> parts) {
   }
 }
 
-CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
-    : decay_(&decay), step_(decay.kind->children()[decay.corner].stencils()), first_(values.first) {
+CornerRings::CornerRings(const RingDecay& decay, const Patch& values, bool across)
+    : decay_(&decay),
+      step_(decay.kind->children()[decay.corner].stencils()),
+      first_(values.first),
+      grows_(decay.larger && !across) {
   std::array<std::vector<double>, 2> centred;
   for (std::size_t c = 0; c < 2; ++c) {
     for (const Vector3& p : values.points) centred[c].push_back(c == 0 ? p.x : p.y);
@@ -160,7 +169,7 @@ CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
   const double largest = std::max(largest_of(centred[0]), largest_of(centred[1]));
   // What the larger eigenvalue's row sees along the second axis: the first one is across that, exactly.
   double of_row = 0;
-  if (decay.larger) {
+  if (grows_) {
     Point2 along;
     double sum = 0;
     for (std::size_t i = 0; i < values.points.size(); ++i) {
@@ -180,10 +189,10 @@ CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
     std::vector<double> along;
     for (std::size_t i = 0; i < values.points.size(); ++i) {
       along.push_back(dot(axes_[c], {centred[0][i], centred[1][i]}));
-      if (decay.larger && c == 1) along.back() -= middle(along_) * decay.largest_column[i];
+      if (grows_ && c == 1) along.back() -= middle(along_) * decay.largest_column[i];
     }
     double off = enlarged(2 * error + (2 * axis_off_ + gamma_bound(4)) * 2 * largest);
-    if (decay.larger) {
+    if (grows_) {
       const double of_column = largest_of(decay.largest_column);
       off =
           enlarged(off + of_row * of_column + along_.upper * (decay.column_off + gamma_bound(4) * of_column));
@@ -196,7 +205,7 @@ CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
 
 // Of the larger eigenvalue's vector along the second axis: at least, and at most.
 Interval CornerRings::larger_part(std::size_t level) const {
-  if (!decay_->larger) return Interval{0};
+  if (!grows_) return Interval{0};
   const auto steps = static_cast<double>(level);
   // Levels are divided by a number near the eigenvalue.
   const double off = (steps + 2) * gamma_bound(4),
@@ -207,7 +216,7 @@ Interval CornerRings::larger_part(std::size_t level) const {
 
 // By powers of two, so that both coordinates are about as large.
 double CornerRings::scale(std::size_t level, std::size_t coordinate) const {
-  if (!decay_->larger) return 1;
+  if (!grows_) return 1;
   double largest = values_[coordinate].level(level).largest;
   if (coordinate == 1)
     largest = std::max(largest, larger_part(level).upper * largest_of(decay_->largest_column));
@@ -225,7 +234,7 @@ Patch CornerRings::net_of(std::size_t level, unsigned order, double RingValues::
   for (std::size_t c = 0; c < 2; ++c) {
     RingValues::Level own = order == 0 ? values_[c].level(level) : values_[c].difference(level, order);
     double off = own.off + (sum != nullptr ? values_[c].further(level).*sum : 0);
-    if (decay_->larger && order == 0 && c == 1) {
+    if (grows_ && order == 0 && c == 1) {
       // Of all further nets at least this much; of one, no more than that.
       const Interval part = larger_part(level);
       const double of_column = largest_of(decay_->largest_column);
@@ -249,13 +258,12 @@ Patch CornerRings::net(std::size_t level) const { return net_of(level, 0, nullpt
 
 std::vector<Patch> CornerRings::all_further(std::size_t level) const {
   std::vector<Patch> nets{net_of(level, 0, &RingValues::Sums::net)};
-  const bool larger = decay_->larger;
   if (decay_->links > 0) {
     nets.push_back(net_of(level, 1, &RingValues::Sums::chain));
     // So that it is added no more often than the other one: i times q - 1, against q^i - 1.
-    if (larger) rescale(nets.back(), 1 / (decay_->ratio.lower - 1));
+    if (grows_) rescale(nets.back(), 1 / (decay_->ratio.lower - 1));
   }
-  if (larger) {
+  if (grows_) {
     nets.push_back(nets[0]);
     Patch& growth = nets.back();
     const double by = scale(level, 1) * larger_part(level).lower;

@@ -41,6 +41,7 @@ class RingValues {
   void descend();
   [[nodiscard]] double take_off_largest(Level& level);
   [[nodiscard]] Level step_between(const Level& from, const Level& to) const;
+  [[nodiscard]] double off_of(std::size_t level) const;
   void add_up(std::vector<double> parts);
 
   const RingDecay* decay_;
@@ -48,18 +49,18 @@ class RingValues {
   double least_off_ = 0;  // of that eigenvalue, relative to it
   double rounding_ = 0;   // of a step, of values of size 1
   std::vector<Level> levels_;
-  double all_off_ = 0, growing_off_ = 0;  // sums of what each step was off, as it is and grown
-  double largest_off_ = 0;                // of a level, what the largest row may see
-  std::vector<Sums> further_;             // of each level, and, last, of those beyond
+  double all_off_ = 0;         // the sum of what each step was off
+  double largest_off_ = 0;     // of a level, what the largest row may see
+  std::vector<Sums> further_;  // of each level, and, last, of those beyond
 };
 
 /// The nets of control values (x, y, 0) at an extraordinary corner, level after level, moved, along axes that suit them.
 ///
-/// Requires:  values of the kind's control points, in x and y.
+/// Requires:  values of the kind's control points, in x and y; with `across`: but for errors nothing of the larger eigenvalue is in them.
 /// Source:    derivations/self_contact.md, "All rings at once".
 class CornerRings {
  public:
-  CornerRings(const RingDecay& decay, const Patch& values);
+  CornerRings(const RingDecay& decay, const Patch& values, bool across = false);
   /// How many levels it is of use to look at; at least one.
   [[nodiscard]] std::size_t count() const { return count_; }
   /// What the coordinates of a level's nets are of values: dot products with these, up to `axis_off` in each number, over a positive
@@ -81,6 +82,7 @@ class CornerRings {
   const RingDecay* decay_;
   Stencils step_;
   std::uint8_t first_;
+  bool grows_;  // Is there something of the larger eigenvalue?
   std::array<Point2, 2> axes_{{{1, 0}, {0, 1}}};
   double axis_off_ = 0;
   Interval along_{

@@ -285,45 +285,51 @@ Interval around(const Pair& pair) {
   return {rounded_down(pair.eigenvalue - pair.off), rounded_up(pair.eigenvalue + pair.off)};
 }
 
+bool add_larger(const Matrix& a, double error, Pair first, LastingRows& result) {
+  const std::size_t size = a.size();
+  if (!verify(a, error, first)) return false;
+  // From the right: the rows of what is turned over.
+  Matrix turned(size, Row(size));
+  for (std::size_t r = 0; r < size; ++r) {
+    for (std::size_t c = 0; c < size; ++c) turned[c][r] = a[r][c];
+  }
+  Pair right = first;
+  right.row = first.column;
+  if (!verify(turned, error, right)) return false;
+  double seen = 0, sum = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    seen += first.row[i] * right.row[i];
+    sum += std::fabs(first.row[i]) + std::fabs(right.row[i]);
+  }
+  for (const double x : right.row) result.column.push_back(x / seen);
+  const double seen_off =
+      enlarged((first.off + right.off + gamma_bound(size + 2) * largest_of(first.row)) * sum);
+  if (!(seen_off < 0x1p-20 * std::fabs(seen))) return false;
+  result.column_error =
+      enlarged(right.off / std::fabs(seen) +
+               (2 * seen_off / std::fabs(seen) + gamma_bound(3)) * largest_of(result.column));
+  result.rows.push_back(first.row);
+  result.error = std::max(result.error, enlarged(static_cast<double>(size) * first.off));
+  result.larger = true;
+  result.ratio = around(first) / result.least;
+  return true;
+}
+
+// Of entries that are not exact.
+double entry_error(const Stencils& step, const Matrix& a) {
+  return is_exact(a) ? 0 : step.max_error() + gamma_bound(2);
+}
+
 }  // namespace
 
 std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t size) {
   const Matrix a = dense(step, size);
   const std::optional<Pair> found = largest_pair(a, {});
   if (!found) return std::nullopt;
-  Pair first = *found;
+  const Pair& first = *found;
   LastingRows result;
   const auto count = static_cast<double>(size);
-  const bool exact_step = is_exact(a);
-  const double error = exact_step ? 0 : step.max_error() + gamma_bound(2);
-  const auto add_larger = [&] {
-    if (!verify(a, error, first)) return false;
-    // From the right: the rows of what is turned over.
-    Matrix turned(size, Row(size));
-    for (std::size_t r = 0; r < size; ++r) {
-      for (std::size_t c = 0; c < size; ++c) turned[c][r] = a[r][c];
-    }
-    Pair right = first;
-    right.row = first.column;
-    if (!verify(turned, error, right)) return false;
-    double seen = 0, sum = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      seen += first.row[i] * right.row[i];
-      sum += std::fabs(first.row[i]) + std::fabs(right.row[i]);
-    }
-    for (const double x : right.row) result.column.push_back(x / seen);
-    const double seen_off =
-        enlarged((first.off + right.off + gamma_bound(size + 2) * largest_of(first.row)) * sum);
-    if (!(seen_off < 0x1p-20 * std::fabs(seen))) return false;
-    result.column_error =
-        enlarged(right.off / std::fabs(seen) +
-                 (2 * seen_off / std::fabs(seen) + gamma_bound(3)) * largest_of(result.column));
-    result.rows.push_back(first.row);
-    result.error = std::max(result.error, enlarged(count * first.off));
-    result.larger = true;
-    result.ratio = around(first) / result.least;
-    return true;
-  };
+  const double error = entry_error(step, a);
   std::optional<Pair> second;
   for (const double eigenvalue : {0.5, 0.25}) {
     if (first.eigenvalue < eigenvalue - same) continue;
@@ -340,7 +346,7 @@ std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t s
     result.rows = std::move(exact->rows);
     result.least = Interval(eigenvalue);
     result.links = exact->links;
-    if (!alone && !add_larger()) return std::nullopt;
+    if (!alone && !add_larger(a, error, first, result)) return std::nullopt;
     return result;
   }
   if (!second) second = largest_pair(a, {first});
@@ -349,8 +355,15 @@ std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t s
   result.rows = {second->row};
   result.error = enlarged(count * second->off);
   result.least = around(*second);
-  if (!(result.least.lower > 0) || !add_larger()) return std::nullopt;
+  if (!(result.least.lower > 0) || !add_larger(a, error, first, result)) return std::nullopt;
   return result;
+}
+
+bool add_largest_row(const Stencils& step, std::size_t size, LastingRows& rows) {
+  const Matrix a = dense(step, size);
+  const std::optional<Pair> first = largest_pair(a, {});
+  return first && first->eigenvalue > rows.least.upper + same &&
+         add_larger(a, entry_error(step, a), *first, rows);
 }
 
 }  // namespace snug

@@ -29,4 +29,7 @@ struct LastingRows {
 /// Source:    derivations/self_contact.md, "Other rows".
 [[nodiscard]] std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t size);
 
+/// To rows of one eigenvalue adds that of the largest one, which is larger and simple. False where it is not proved to be.
+[[nodiscard]] bool add_largest_row(const Stencils& step, std::size_t size, LastingRows& rows);
+
 }  // namespace snug

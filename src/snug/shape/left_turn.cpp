@@ -175,9 +175,22 @@ class LeftTurn {
     if (patch.kind->polynomial() && coefficients_hold(nets, at)) return true;
     if (levels == 0) return false;
     if (const RingDecay* tip = decay_of(*patch.kind))
-      return nets.size() == 1 && tip_holds(*tip, patch, levels - 1);
+      return nets.size() == 1 && LeftTurn{}.tip_holds(*tip, patch, levels - 1);
     for (unsigned child = 0; child < 4; ++child) {
       if (!child_holds(nets, child, levels - 1, at)) return false;
+    }
+    return true;
+  }
+
+  // Of a patch at a spike that it is seen along.
+  bool holds_around_spike(const Patch& patch, unsigned corner, unsigned levels) {
+    if (levels == 0) return false;
+    if (const RingDecay* tip = decay_of(*patch.kind))
+      return tip->spike && corner_of(*tip, patch) == corner && tip_holds(*tip, patch, levels - 1, true);
+    for (unsigned child = 0; child < 4; ++child) {
+      if (!(child == corner ? holds_around_spike(split(patch, child), corner, levels - 1)
+                            : child_holds({&patch, 1}, child, levels - 1, {})))
+        return false;
     }
     return true;
   }
@@ -190,7 +203,7 @@ class LeftTurn {
     return holds(std::span(pieces).first(nets.size()), levels, at.of(child));
   }
 
-  bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels) {
+  bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels, bool across = false) {
     const unsigned corner = corner_of(tip, patch);
     std::vector<FanEnd> ends;
     for (const unsigned edge : {corner, (corner + 2) % 3}) {
@@ -210,7 +223,7 @@ class LeftTurn {
       }
       return true;
     };
-    const CornerRings rings(tip, patch);
+    const CornerRings rings(tip, patch, across);
     for (std::size_t ring = 0; ring < std::min(rings.count(), max_single_rings); ++ring) {
       const std::vector<Patch> further = rings.all_further(ring);
       const bool may_hold = further.size() > 1 || further[0].error < max_net_share * further[0].largest;
@@ -269,6 +282,10 @@ class LeftTurn {
 
 bool turns_left_everywhere(const Patch& patch) {
   return LeftTurn{}.holds({&patch, 1}, patch.kind->polynomial() ? 1 : corner_levels, {});
+}
+
+bool turns_left_around_spike(const Patch& patch, unsigned corner) {
+  return LeftTurn{}.holds_around_spike(patch, corner, corner_levels);
 }
 
 }  // namespace snug

@@ -10,4 +10,8 @@ namespace snug {
 /// Source:    derivations/self_contact.md, "A star", "At extraordinary corners".
 [[nodiscard]] bool turns_left_everywhere(const Patch& patch);
 
+/// The same of a patch at a spike (RingDecay), that corner of it, seen along the spike: in exact values there is nothing of what grows
+/// fastest there.
+[[nodiscard]] bool turns_left_around_spike(const Patch& patch, unsigned corner);
+
 }  // namespace snug

@@ -206,6 +206,40 @@ class DecaySearch {
   std::vector<Row> columns_;
 };
 
+// At a vertex inside that is sharp by itself: the rows of first modes have no weight at it, and no other point's rule sees whether it is
+// sharp, so they are those of a smooth vertex.
+std::optional<LastingRows> rows_of_spike(const Kind& kind, std::size_t corner, const Stencils& step) {
+  constexpr double rounding = 64 * unit_roundoff, no_eigenvector = 1e-12;
+  KindKey smooth = kind.key();
+  smooth.corners[corner].sharp = false;
+  const Neighbourhood around = neighbourhood(smooth);
+  Stencils modes;
+  kind.rules().add_corner_tangents(around.ruled(), kind.rules().corner_of(around.topology, corner), modes);
+  const double eigenvalue = kind.rules().shrink_factor(smooth.corners[corner]);
+  LastingRows result;
+  for (std::size_t t = 0; t < 2; ++t) {
+    const Stencils::Row row = modes.row(t);
+    Row& weights = result.rows.emplace_back(kind.control_count(), 0.0);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) weights[row.sources[i]] += row.weights[i];
+    result.error = std::max(result.error, CharacteristicMap::row_error(row));
+    // Are they what they are taken for?
+    Row image(weights.size(), 0.0);
+    for (std::size_t r = 0; r < weights.size(); ++r) {
+      const Stencils::Row from = step.row(r);
+      for (std::size_t i = 0; i < from.sources.size(); ++i)
+        image[from.sources[i]] += weights[r] * from.weights[i];
+    }
+    for (std::size_t c = 0; c < image.size(); ++c) {
+      if (!(std::fabs(image[c] - eigenvalue * weights[c]) <= no_eigenvector * row.abs_sum))
+        return std::nullopt;
+    }
+    if (!(row.abs_sum > 0)) return std::nullopt;
+  }
+  result.least = {eigenvalue * (1 - rounding), eigenvalue * (1 + rounding)};
+  if (!add_largest_row(step, kind.control_count(), result)) return std::nullopt;
+  return result;
+}
+
 }  // namespace
 
 std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicMap* map) {
@@ -216,9 +250,11 @@ std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicM
     const KindChild& child = kind.children()[corner];
     if (kind.regular_corner(corner) || child.kind != &kind || child.first != 0) continue;
     const Stencils step = child.stencils();
-    const std::optional<LastingRows> lasting = find_lasting_rows(step, kind.control_count());
-    if (!lasting) return std::nullopt;
     RingDecay decay;
+    decay.spike = kind.corner(corner).closed && kind.corner(corner).sharp && !kind.corner(corner).odd;
+    const std::optional<LastingRows> lasting =
+        decay.spike ? rows_of_spike(kind, corner, step) : find_lasting_rows(step, kind.control_count());
+    if (!lasting) return std::nullopt;
     decay.kind = &kind;
     decay.corner = corner;
     decay.least = lasting->least;

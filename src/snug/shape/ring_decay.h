@@ -21,6 +21,8 @@ struct RingDecay {
   bool larger = false;                              ///< a larger one, of one row of W, beside the least one
   Interval ratio{1};                                ///< of that one to the least one
   std::vector<double> largest_row, largest_column;  ///< about that row of W, and that column of V, W V = 1
+  bool spike =
+      false;  ///< at a vertex inside that is sharp by itself: the least one is that of two rows, which see the sheet's turn
   double row_error = 0,
          column_off = 0;  ///< of the row, in sum; of the column, in extents, and as what other rows see of it
   std::size_t links =

@@ -212,8 +212,8 @@ double weight_of(const Frame& frame) {
   return weight;
 }
 
-// Control values along two vectors.
-Patch seen(const Patch& patch, const Frame& frame) {
+// Control values along two vectors, each of which the exact one is this near to.
+Patch seen(const Patch& patch, const Frame& frame, double off) {
   Patch flat;
   flat.kind = patch.kind;
   flat.first = patch.first;
@@ -223,8 +223,9 @@ Patch seen(const Patch& patch, const Frame& frame) {
     flat.largest = std::max(flat.largest, max_abs(value));
     flat.points.push_back(value);
   }
-  flat.error =
-      enlarged(weight_of(frame) * (patch.error + gamma_bound(4) * patch.largest)) + 4 * underflow_error;
+  flat.error = enlarged(weight_of(frame) * (patch.error + gamma_bound(4) * patch.largest) +
+                        2 * off * (patch.largest + patch.error)) +
+               4 * underflow_error;
   return flat;
 }
 
@@ -235,6 +236,29 @@ std::array<Vector3, 2> spokes_of(const StarSector& sector) {
   return {limits[(sector.centre + 1) % 3] - c, limits[(sector.centre + 2) % 3] - c};
 }
 
+// A direction that is on the side of each of some others, if the first one is hardly: towards the one that is farthest off, again and
+// again.
+Vector3 seen_by_all(const Vector3& first, const std::vector<Vector3>& normals) {
+  constexpr double enough = 0.3;
+  constexpr int steps = 40;
+  Vector3 at = first;
+  for (int i = 0; i < steps; ++i) {
+    double least = INFINITY;
+    Vector3 farthest;
+    for (const Vector3& normal : normals) {
+      const Vector3 unit = normalized(normal);
+      const double along = dot(at, unit) / length(at);
+      if (along < least) {
+        least = along;
+        farthest = unit;
+      }
+    }
+    if (i == 0 && least > enough) return first;
+    at = at + (1.0 / (i + 2)) * (farthest - at);
+  }
+  return normalized(at);
+}
+
 class StarCheck {
  public:
   StarCheck(std::span<const StarSector> sectors, bool closed) : sectors_(sectors), closed_(closed) {}
@@ -242,32 +266,45 @@ class StarCheck {
   [[nodiscard]] bool certainly_injective() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
     if (!make_frame()) return false;
-    for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_));
-    return std::all_of(flat_.begin(), flat_.end(), turns_left_everywhere) && border_turns_once();
+    for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_, frame_off_));
+    for (std::size_t s = 0; s < flat_.size(); ++s) {
+      const auto centre = static_cast<unsigned>(sectors_[s].centre);
+      if (!(spike_ ? turns_left_around_spike(flat_[s], centre) : turns_left_everywhere(flat_[s])))
+        return false;
+    }
+    return border_turns_once();
   }
 
  private:
-  // A direction that is on the side of each normal, if the first one is hardly: towards the one that is farthest off, again and again.
-  static Vector3 seen_by_all(const Vector3& first, const std::vector<Vector3>& normals) {
-    constexpr double enough = 0.3;
-    constexpr int steps = 40;
-    Vector3 at = first;
-    for (int i = 0; i < steps; ++i) {
-      double least = INFINITY;
-      Vector3 farthest;
-      for (const Vector3& normal : normals) {
-        const Vector3 unit = normalized(normal);
-        const double along = dot(at, unit) / length(at);
-        if (along < least) {
-          least = along;
-          farthest = unit;
-        }
-      }
-      if (i == 0 && least > enough) return first;
-      at = at + (1.0 / (i + 2)) * (farthest - at);
+  // Where the centre is a spike: what the row of the largest eigenvalue sees. Its direction is that of all sectors: its row is one of the
+  // ring around the vertex, and simple. Each number of it is off by `error` at most.
+  struct Spike {
+    Vector3 along;
+    double error;
+  };
+  [[nodiscard]] std::optional<Spike> spike() const {
+    const auto centre = static_cast<unsigned>(sectors_[0].centre);
+    Patch patch = *sectors_[0].patch;
+    const CornerFan& fan = patch.kind->corner(patch.to_kind(centre));
+    if (!closed_ || !fan.closed || !fan.sharp || fan.odd) return std::nullopt;
+    patch.path = {};
+    const RingDecay* tip = nullptr;
+    for (unsigned levels = corner_levels; (tip = decay_of(*patch.kind)) == nullptr; --levels) {
+      if (levels == 0 || patch.kind->polynomial()) return std::nullopt;
+      patch = split(patch, centre);
     }
-    return normalized(at);
+    if (!tip->spike || corner_of(*tip, patch) != centre) return std::nullopt;
+    Spike spike{{}, 0};
+    double sum = 0;
+    for (std::size_t i = 0; i < patch.points.size(); ++i) {
+      spike.along = spike.along + tip->largest_row[i] * patch.points[i];
+      sum += std::fabs(tip->largest_row[i]);
+    }
+    spike.error = enlarged((sum + tip->row_error) * patch.error +
+                           2 * (tip->row_error + gamma_bound(patch.points.size() + 4) * sum) * patch.largest);
+    return spike;
   }
+
   // Along the mean normal; scaled so that the ring is about as long as wide.
   bool make_frame() {
     Vector3 normal;
@@ -280,7 +317,10 @@ class StarCheck {
       normal = normal + normals.back();
     }
     if (closed_) spokes_.pop_back();
-    normal = seen_by_all(normalized(normal), normals);
+    const std::optional<Spike> tip = spike();
+    spike_ = tip.has_value();
+    normal = spike_ ? normalized(dot(normal, tip->along) < 0 ? -tip->along : tip->along)
+                    : seen_by_all(normalized(normal), normals);
     if (normal == Vector3{}) return false;
     const Vector3 other = std::fabs(normal.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
     const Vector3 x = normalized(cross(other, normal)), y = cross(normal, x);
@@ -297,6 +337,16 @@ class StarCheck {
     if (!(rest > 1e-6 * yy)) return false;
     const double first = 1 / std::sqrt(xx), second = 1 / std::sqrt(rest);
     frame_ = {first * x, second * (y - (xy / xx) * x)};
+    if (tip) {
+      // The exact vectors are across the spike, exactly: what they have along it is taken off.
+      const double least = rounded_down(length(tip->along) * (1 - gamma_bound(8)) - 2 * tip->error);
+      if (!(least > 0)) return false;
+      for (const Vector3& axis : frame_) {
+        const double seen =
+            std::fabs(dot(axis, tip->along)) + gamma_bound(8) * length(axis) * length(tip->along);
+        frame_off_ = std::max(frame_off_, enlarged((seen + 2 * tip->error * length(axis)) / least));
+      }
+    }
     return is_finite(frame_[0]) && is_finite(frame_[1]);
   }
 
@@ -367,7 +417,8 @@ class StarCheck {
       const Vector3 offset = sectors_[s].patch->origin - first.origin;
       const Vector3 moved = offset - centre;
       const Point2 shift = Point2{dot(frame_[0], moved), dot(frame_[1], moved)} - point;
-      const double error = enlarged(weight_of(frame_) * gamma_bound(8) * (max_abs(offset) + max_abs(centre)) +
+      const double error = enlarged((weight_of(frame_) * gamma_bound(8) + 2 * frame_off_) *
+                                        (max_abs(offset) + max_abs(centre)) +
                                     gamma_bound(2) * (largest_of(shift) + largest_of(point)));
       return turn.add(flat_[s], edge, shift, error);
     });
@@ -377,11 +428,52 @@ class StarCheck {
   std::span<const StarSector> sectors_;
   bool closed_;
   std::vector<Vector3> spokes_;  // closed: one a sector; open: one more
+  bool spike_ = false;
   Frame frame_;
+  double frame_off_ = 0;  // how far the exact vectors are from these
   std::vector<Patch> flat_;
 };
 
+// The control point that alone is a sector's vertex.
+std::optional<std::size_t> point_in_place(const StarSector& sector) {
+  const Patch& patch = *sector.patch;
+  const Stencils::Row row = patch.kind->corner_limits().row(patch.to_kind(sector.centre));
+  if (row.sources.size() != 1 || row.weights[0] != 1) return std::nullopt;
+  return row.sources[0];
+}
+
 }  // namespace
+
+bool stays_in_place(const StarSector& sector) { return point_in_place(sector).has_value(); }
+
+// A plane through the vertex with all other control points of the one on its one side, and of the other on the other.
+bool certainly_meet_only_at_vertex(const StarSector& a, const StarSector& b) {
+  struct Direction {
+    Vector3 value;
+    double error;
+  };
+  std::vector<Direction> all;
+  std::vector<Vector3> values;
+  Vector3 sum;
+  for (const auto& [sector, sign] : {std::pair{&a, 1.0}, std::pair{&b, -1.0}}) {
+    const std::optional<std::size_t> vertex = point_in_place(*sector);
+    if (!vertex) return false;
+    const std::vector<Vector3>& points = sector->patch->points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i == *vertex) continue;
+      const Vector3 d = sign * (points[i] - points[*vertex]);
+      all.push_back({d, enlarged(2 * sector->patch->error + unit_roundoff * max_abs(d))});
+      values.push_back(d);
+      sum = sum + normalized(d);
+    }
+  }
+  const Vector3 across = seen_by_all(sum, values);
+  return std::all_of(all.begin(), all.end(), [&](const Direction& d) {
+    const double size = std::fabs(across.x) + std::fabs(across.y) + std::fabs(across.z);
+    return dot(across, d.value) >
+           enlarged(size * (d.error + gamma_bound(4) * max_abs(d.value))) + underflow_error;
+  });
+}
 
 bool certainly_injective(std::span<const StarSector> sectors, bool closed) {
   return StarCheck(sectors, closed).certainly_injective();

@@ -24,4 +24,13 @@ struct StarSector {
 /// Source:    derivations/self_contact.md, "A star".
 [[nodiscard]] bool certainly_injective(std::span<const StarSector> sectors, bool closed);
 
+/// Is the limit of a sector's vertex its control point, whatever all others are?
+[[nodiscard]] bool stays_in_place(const StarSector& sector);
+
+/// Is it proved that two sectors at a vertex that stays in place have no other point in common?
+///
+/// Guarantee: true only if they have none, in exact arithmetic.
+/// Source:    derivations/self_contact.md, "Pairs at one vertex".
+[[nodiscard]] bool certainly_meet_only_at_vertex(const StarSector& a, const StarSector& b);
+
 }  // namespace snug

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <snug/mesh/disjoint_sets.h>
 #include <support/contract.h>
 
 namespace snug {
@@ -193,21 +194,44 @@ LevelStar LevelComplex::star(const LevelVertex& vertex, unsigned level) const {
   return star;
 }
 
-// Each piece's third corner is the next one's second, on the same edge: middles identify edges.
+LevelComplex::Ends LevelComplex::ends_of(const LevelStar::Sector& sector) const {
+  const PieceName& piece = sector.piece;
+  const auto at = piece.path.corners();
+  const auto middle = [&](std::size_t k) {
+    const auto &from = at[sector.centre], &to = at[(sector.centre + k) % 3];
+    return vertex(piece.patch, piece.path.level() + 1u, from[0] + to[0], from[1] + to[1]);
+  };
+  return {middle(1), middle(2)};
+}
+
+std::vector<LevelStar> LevelComplex::fans(const LevelStar& star) const {
+  const std::size_t count = star.sectors.size();
+  std::unordered_map<LevelVertex, std::vector<std::uint32_t>, LevelVertexHash> at;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const auto [begin, end] = ends_of(star.sectors[s]);
+    at[begin].push_back(s);
+    at[end].push_back(s);
+  }
+  DisjointSets sets(count);
+  for (const auto& [edge, sectors] : at) {
+    if (sectors.size() == 2) sets.join(sectors[0], sectors[1]);
+  }
+  std::vector<LevelStar> fans;
+  std::unordered_map<std::uint32_t, std::size_t> places;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const auto [place, is_new] = places.try_emplace(sets.least(s), fans.size());
+    if (is_new) fans.emplace_back();
+    fans[place->second].sectors.push_back(star.sectors[s]);
+  }
+  for (LevelStar& fan : fans) put_in_order(fan);
+  return fans;
+}
+
+// Each piece's third corner is the next one's second, on the same edge.
 void LevelComplex::put_in_order(LevelStar& star) const {
   const std::size_t n = star.sectors.size();
-  struct Ends {
-    LevelVertex begin, end;
-  };
   std::vector<Ends> ends;
-  for (const auto& [piece, centre] : star.sectors) {
-    const auto at = piece.path.corners();
-    const auto middle = [&, centre_of = centre, &named = piece](std::size_t k) {
-      const auto &from = at[centre_of], &to = at[(centre_of + k) % 3];
-      return vertex(named.patch, named.path.level() + 1u, from[0] + to[0], from[1] + to[1]);
-    };
-    ends.push_back({middle(1), middle(2)});
-  }
+  for (const LevelStar::Sector& sector : star.sectors) ends.push_back(ends_of(sector));
   // Each end is met by at most one begin and the other way round: else it is no fan.
   std::unordered_map<LevelVertex, std::size_t, LevelVertexHash> begins, by_end;
   for (std::size_t s = 0; s < n; ++s) {

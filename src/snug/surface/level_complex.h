@@ -51,6 +51,10 @@ class LevelComplex {
   [[nodiscard]] std::array<LevelVertex, 3> vertices(const PieceName& piece) const;
   /// Requires:  a vertex of a piece of that level.
   [[nodiscard]] LevelStar star(const LevelVertex& vertex, unsigned level) const;
+  /// Puts sectors at one vertex in order, if they are a fan: sets `fan` and `closed`.
+  void put_in_order(LevelStar& star) const;
+  /// The sectors of a star as fans, each as large as it can be: across an edge that two of them alone are at.
+  [[nodiscard]] std::vector<LevelStar> fans(const LevelStar& star) const;
 
  private:
   // An edge of a root patch from its corner k to k + 1, on the whole edge that it is a half of or all: in
@@ -66,9 +70,13 @@ class LevelComplex {
   [[nodiscard]] unsigned offset(PatchId patch) const { return surface_->after_first_split(patch) ? 1u : 0u; }
   [[nodiscard]] std::array<Side, 3> sides_of(PatchId patch) const;
   [[nodiscard]] LevelVertex vertex(PatchId patch, unsigned splits, std::uint64_t i, std::uint64_t j) const;
+  // The middles of a sector's edges at its centre: they identify edges.
+  struct Ends {
+    LevelVertex begin, end;
+  };
+  [[nodiscard]] Ends ends_of(const LevelStar::Sector& sector) const;
   void add_pieces(PatchId patch, unsigned splits, std::uint64_t i, std::uint64_t j,
                   std::vector<LevelStar::Sector>& out) const;
-  void put_in_order(LevelStar& star) const;
 
   const LimitSurface* surface_;
   unsigned first_level_ = 0;
