@@ -285,5 +285,58 @@ TEST(normals, cones_contain_what_evaluation_gives) {
   EXPECT_GT(samples, 20'000U);
 }
 
+// Bodies of triangles, quads and pentagons with borders and creases: at corners, and just beside them, evaluation gives one normal, and
+// cones hold it. Tangents there are those of faces that are quads one step on.
+TEST(normals, at_creases_and_borders_of_mixed_polygons_are_limits_of_those_beside) {
+  namespace meshes = oracle::meshes;
+  std::mt19937_64 random(5);
+  std::size_t corners = 0, in_cones = 0;
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(40)); ++trial) {
+    // No sectors of more than three faces: the tangents of wide ones do not span what is near.
+    const auto n = static_cast<std::uint32_t>(3 + trial % 5);
+    oracle::TaggedMesh mesh =
+        meshes::shaken(trial % 2 == 0 ? meshes::prism(n) : meshes::pyramid(3 + n % 2), 0.2, random);
+    for (std::size_t k = random() % 3; k > 0; --k)
+      mesh.polygons.erase(mesh.polygons.begin() +
+                          static_cast<std::ptrdiff_t>(random() % mesh.polygons.size()));
+    for (const auto& face : mesh.polygons) {
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        if (random() % 4 == 0)
+          mesh.creases.push_back({face[k], face[(k + 1) % face.size()], random() % 3 == 0 ? 1.5 : 10});
+      }
+    }
+    const Surface surface(testing::control_mesh(mesh),
+                          {.scheme = Scheme::catmark, .boundary = BoundaryRule::edge_only});
+    const LimitSurface& limit = surface.data()->limit();
+    for (const PatchEnclosure& piece : cones_of(surface, 1).pieces) {
+      const Patch patch = limit.patch(PatchId(limit.patches_of(piece.patch.owner).begin + piece.patch.part));
+      for (const TriangleParameter at : {TriangleParameter{0, 0}, {1, 0}, {0, 1}}) {
+        const LimitFrame frame = limit_frame(patch, to_face(path_of(piece.piece), at));
+        if (!frame.normal) continue;
+        if (piece.normals && frame.normal_error) {
+          ++in_cones;
+          EXPECT_LE(angle_between(piece.normals->axis, *frame.normal),
+                    piece.normals->angle + 2 * *frame.normal_error)
+              << "trial " << trial;
+        }
+        // On a way into the piece normals come nearer, if slowly (1 over the number of rings, at sharp corners of two quads).
+        const auto off_at = [&](int level) {
+          const double in = std::ldexp(1, -level) / 3;
+          const LimitFrame beside = limit_frame(
+              patch, to_face(path_of(piece.piece), {at.u + in * (1 - 3 * at.u), at.v + in * (1 - 3 * at.v)}));
+          return beside.normal ? angle_between(*beside.normal, *frame.normal) : 0;
+        };
+        ++corners;
+        EXPECT_LE(off_at(20), std::max(1e-3, 0.75 * off_at(8)))
+            << "trial " << trial << ", owner " << piece.patch.owner << " at " << at.u << " " << at.v
+            << ", piece " << piece.piece;
+      }
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GT(corners, 2000U);
+  EXPECT_GT(in_cones, 500U);
+}
+
 }  // namespace
 }  // namespace snug::normals_test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include <snug/geometry/rounding.h>
 #include <snug/shape/characteristic_map.h>
@@ -61,6 +62,10 @@ double abs_sum(const Row& row) {
   double sum = 0;
   for (const double x : row) sum += std::fabs(x);
   return enlarged(sum * (1 + gamma_bound(row.size())));
+}
+
+double product(const Row& row, const Row& column) {
+  return std::inner_product(row.begin(), row.end(), column.begin(), 0.0);
 }
 
 class DecaySearch {
@@ -159,34 +164,39 @@ class DecaySearch {
     double mixing = 0;
     for (std::size_t t = 0; t < m; ++t) {
       for (std::size_t k = 0; k < m; ++k) {
-        double product = k == t ? -1 : 0;
-        for (std::size_t i = 0; i < size_; ++i) product += lasting_.rows[t][i] * columns_[k][i];
-        mixing = std::max(mixing, std::fabs(product) +
-                                      (lasting_.error + gamma_bound(size_ + 2) * abs_sum(lasting_.rows[t])) *
-                                          largest_of(columns_[k]));
+        const double off = product(lasting_.rows[t], columns_[k]) - (k == t ? 1 : 0);
+        mixing = std::max(
+            mixing, std::fabs(off) + (lasting_.error + gamma_bound(size_ + 2) * abs_sum(lasting_.rows[t])) *
+                                         largest_of(columns_[k]));
       }
     }
     if (!(static_cast<double>(m) * mixing < 0x1p-24)) return false;
     double widest = 0;
     for (const Row& column : columns_) widest = std::max(widest, extent(column));
+    // The part of each image that W does not see, generously: with all roundings it is far below 1.
+    std::vector<double> unseen;
     for (std::size_t t = 0; t < m; ++t) {
-      // The part of the image that W does not see, generously: with all roundings it is far below 1.
       Row left = images[t];
       for (std::size_t k = 0; k < m; ++k) {
-        double share = 0;
-        for (std::size_t i = 0; i < size_; ++i) share += lasting_.rows[k][i] * images[t][i];
+        const double share = product(lasting_.rows[k], images[t]);
         for (std::size_t i = 0; i < size_; ++i) left[i] -= share * columns_[k][i];
       }
-      const double unseen = extent(left) / least + 0x1p-20 * widest;
+      unseen.push_back(extent(left) / least + 0x1p-20 * widest);
+    }
+    for (std::size_t t = 0; t < m; ++t) {
       const double grown =
-          enlarged(2 * extent(columns_[t]) + decay.most * unseen * period / rest * period / rest);
-      seen += grown * (abs_sum(lasting_.rows[t]) + lasting_.error);
+          enlarged(2 * extent(columns_[t]) + decay.most * unseen[t] * period / rest * period / rest);
       const double row_sum = abs_sum(lasting_.rows[t]) + lasting_.error;
+      seen += grown * row_sum;
       if (lasting_.links > 0 && !(lasting_.larger && t + 1 == m)) {
+        // At each step a chain moves this column by others, and with them comes what W does not see of these.
         Row moved = images[t];
         for (std::size_t i = 0; i < size_; ++i) moved[i] = moved[i] / least - columns_[t][i];
+        double with_it = unseen[t];
+        for (std::size_t k = 0; k < m; ++k)
+          with_it += 2 * std::fabs(product(lasting_.rows[k], moved)) * unseen[k];
         decay.chain_seen = enlarged(
-            decay.chain_seen + 2 * (extent(moved) + unseen * (1 + 8 * decay.most * period / rest)) * row_sum);
+            decay.chain_seen + 2 * (extent(moved) + with_it * (1 + decay.most * period / rest)) * row_sum);
       }
       // The larger eigenvalue's row is the last one. Of its column what W does not see is the sum of B^i r / q^(i + 1).
       if (!lasting_.larger || t + 1 < m) continue;
