@@ -26,6 +26,10 @@ install(FILES ${PROJECT_BINARY_DIR}/snug-config.cmake ${PROJECT_BINARY_DIR}/snug
         DESTINATION ${snug_package_dir} COMPONENT development)
 # The prefix is found from where snug.pc lies: what is installed may be moved.
 file(RELATIVE_PATH SNUG_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+set(SNUG_PC_ZLIB "")
+if(ZLIB_FOUND)
+  set(SNUG_PC_ZLIB ", zlib")
+endif()
 cmake_path(APPEND SNUG_PC_INCLUDEDIR "\${prefix}" ${CMAKE_INSTALL_INCLUDEDIR})
 cmake_path(APPEND SNUG_PC_LIBDIR "\${prefix}" ${CMAKE_INSTALL_LIBDIR})
 configure_file(cmake/snug.pc.in ${PROJECT_BINARY_DIR}/snug.pc @ONLY)

@@ -73,6 +73,15 @@ function(snug_precompiled name)
   snug_precompile(${name} ${ARGN})
 endfunction()
 
+# For compressed 3MF files: without it these are refused, and written uncompressed.
+if(NOT EMSCRIPTEN)
+  find_package(ZLIB QUIET)
+endif()
+set(snug_zlib "")
+if(ZLIB_FOUND)
+  set(snug_zlib ZLIB::ZLIB)
+endif()
+
 #   snug_library(room/a.cpp ...)
 function(snug_library)
   find_package(hwy REQUIRED)
@@ -83,7 +92,9 @@ function(snug_library)
                                                 VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy nlohmann_json::nlohmann_json
-                                             Threads::Threads)
+                                             Threads::Threads ${snug_zlib})
+  set_source_files_properties(io/zip.cpp PROPERTIES COMPILE_DEFINITIONS SNUG_HAS_ZLIB=$<BOOL:${ZLIB_FOUND}>
+                              SKIP_UNITY_BUILD_INCLUSION ON)
   snug_precompile(snug_objects)
   snug_units(snug_objects)
 
@@ -94,11 +105,11 @@ function(snug_library)
   target_compile_features(snug PUBLIC cxx_std_20)
   target_include_directories(snug PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(snug PRIVATE hwy::hwy Threads::Threads)
+  target_link_libraries(snug PRIVATE hwy::hwy Threads::Threads ${snug_zlib})
 
   if(BUILD_SHARED_LIBS)  # whose private symbols cannot be linked
     add_library(snug_private STATIC $<TARGET_OBJECTS:snug_objects>)
-    target_link_libraries(snug_private PRIVATE hwy::hwy Threads::Threads)  # as snug does: the same flags, the same objects
+    target_link_libraries(snug_private PRIVATE hwy::hwy Threads::Threads ${snug_zlib})  # as snug does: the same flags, the same objects
   else()
     add_library(snug_private INTERFACE)
     target_link_libraries(snug_private INTERFACE snug)

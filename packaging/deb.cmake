@@ -58,7 +58,7 @@ the dissertation repeated; with manual pages and completion in bash.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsnug-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libhwy-dev, libstdc++-12-dev | libstdc++-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libhwy-dev, zlib1g-dev, libstdc++-12-dev | libstdc++-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "snug, libosd-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "proved answers about subdivision surfaces - C++ library
 ${about}

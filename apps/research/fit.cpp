@@ -285,7 +285,7 @@ Command fit_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh to begin with (OBJ, OFF, PLY, STL, USD or glTF)");
+           "Control mesh to begin with (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
   list.add(Group::own, "--points FILE", &options->points,
            "File with lines 'x y z', or all 'x y z face u v' as in eval; - for standard input")
       .required();

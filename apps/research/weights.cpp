@@ -85,7 +85,7 @@ Command weights_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   add_place_options(list, options->samples, options->at);
   add_common_options(list, *options);
   return {"weights",

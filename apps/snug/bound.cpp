@@ -116,11 +116,12 @@ class Polyhedra {
   ControlMesh mesh_;
 };
 
-void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicFile& file, Report& report) {
+void write_polyhedra(const Polyhedra& polyhedra, const Options& options, std::optional<double> units,
+                     AtomicFile& file, Report& report) {
   if (polyhedra.count() == 0) {
     throw InputError(InputProblem::refused, options.mesh + ": no enclosure is a solid or a polygon to write");
   }
-  write_facets(polyhedra.mesh(), file, options.polyhedra, options);
+  write_facets(polyhedra.mesh(), file, options.polyhedra, options, units);
   report.text(fmt::format("{}: {} polyhedra with {} facets, for pictures", options.polyhedra,
                           polyhedra.count(), polyhedra.mesh().face_count()));
 }
@@ -175,6 +176,7 @@ ExitStatus run(const Options& options) {
   std::optional<Length> tolerance;
   if (!options.error.empty()) tolerance = parse_length(options.error, "--error");
   ControlMesh mesh = load_mesh(options.mesh, options);
+  const std::optional<double> units = mesh.metres_per_unit;
   std::optional<CurveSet> curves;
   std::optional<Surface> surface;
   if (asks_for_curves("bound", mesh, options.mesh, options, options.degree)) {
@@ -196,7 +198,7 @@ ExitStatus run(const Options& options) {
   BoundSummary summary;
   ConeCount cones;
   naming(options.mesh, [&] {
-    if (tolerance) how.error = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
+    if (tolerance) how.error = tolerance->in_mesh_units(curves ? curves->size() : surface->size(), units);
     if (report.json()) report.write().key("enclosures").begin_array();
     ProgressBar bar("bounding " + options.mesh, options.quiet);
     const auto keep_curve = [&](const CurveEnclosure& piece) {
@@ -221,7 +223,7 @@ ExitStatus run(const Options& options) {
   std::optional<AtomicFile> file;
   if (!options.polyhedra.empty()) {
     file.emplace(options.polyhedra);
-    write_polyhedra(polyhedra, options, *file, report);
+    write_polyhedra(polyhedra, options, units, *file, report);
   }
   if (file) return report.finish(summary.outcome == Outcome::complete, {&*file});
   return report.finish(summary.outcome == Outcome::complete);
@@ -233,7 +235,7 @@ Command bound_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   list.add(Group::own, "--error LENGTH", &options->error,
            "Split until each radius is at most half of this; mesh units or percent, such as 1%")
       .formerly("--tolerance");

@@ -163,7 +163,7 @@ ExitStatus run(const Options& options) {
   const std::vector<Point3> points = read_points(options.points);
   const Surface surface = read_surface(options.mesh, options, options.scheme);
   Precision wanted;
-  wanted.absolute = precision.in_mesh_units(surface.size());
+  wanted.absolute = precision.in_mesh_units(surface.size(), units_of(surface));
   wanted.relative = options.relative;
   std::vector<Result> results;
   CertificateFile certificate(options);
@@ -198,7 +198,7 @@ Command closest_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::closest_point;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
   list.add(Group::own, "--points FILE", &options->points,
            "File with one point per line, 'x y z'; text, CSV or a NumPy array (.npy); - for standard input")
       .required();

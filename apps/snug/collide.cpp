@@ -159,13 +159,13 @@ ExitStatus run_scene(const Options& options) {
   KeptAnswers<PairCollision> proved;
   SceneQuestion question;
   question.key =
-      fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.max_splits);
+      fmt::format("{} {}{} {} {}", tolerance.number, tolerance.percent, tolerance.unit, options.solid, options.max_splits);
   question.margin = text.margin;
   question.all_pairs = options.all_pairs;
   question.header = "verdict lower upper ax ay az bx by bz";
   question.ask = [&](const ScenePair& pair, Workspace& workspace, SceneAnswer& answer, JsonWriter* json) {
     CollideOptions wanted = thorough;
-    wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
+    wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts), run.units());
     wanted.solid = options.solid;
     const Collision found = collide(run.scene(), pair, wanted, run_of(options, quiet, &workspace));
     if (certificate.wanted()) proved.add({pair.parts, found});
@@ -186,7 +186,8 @@ ExitStatus run_scene(const Options& options) {
   };
   question.head = [&](JsonWriter& json) {
     json.key("tolerance");
-    tolerance.percent ? json.value(fmt::format("{}%", tolerance.number)) : json.value(tolerance.number);
+    tolerance.percent ? json.value(fmt::format("{}%", tolerance.number))
+                      : json.value(tolerance.in_mesh_units(1, run.units()));
     json.field("margin", text.margin);
   };
   return run.answer(question, "collide", options.exit_code);
@@ -200,8 +201,8 @@ ExitStatus run(const Options& options) {
   const Length margin = parse_length(options.margin, "--margin", true);
   PairArguments pair(options);
   CollideOptions wanted = thorough;
-  wanted.tolerance = tolerance.in_mesh_units(pair.size());
-  wanted.margin = margin.in_mesh_units(pair.size());
+  wanted.tolerance = tolerance.in_mesh_units(pair.size(), pair.units());
+  wanted.margin = margin.in_mesh_units(pair.size(), pair.units());
   wanted.solid = options.solid;
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
@@ -218,7 +219,7 @@ ExitStatus run(const Options& options) {
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, {.monitor = &monitor});
   if (depth && depth->depth.lower > 0) prove_contact(answer);
   const std::optional<Contacts> all =
-      all_contacts(options, *wanted.tolerance, precision.in_mesh_units(pair.size()), pair, monitor);
+      all_contacts(options, *wanted.tolerance, precision.in_mesh_units(pair.size(), pair.units()), pair, monitor);
   // A curve, a crossing or an area proves what the verdict alone may not.
   if (all && std::any_of(all->regions.begin(), all->regions.end(), [](const ContactRegion& region) {
         return region.verdict == Verdict::intersecting;

@@ -66,7 +66,7 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 void add_common_options(OptionList& list, CommonOptions& options) {
   Option& scheme = add_scheme_option(
       list, "--scheme", options.scheme,
-      "Subdivision scheme; auto: curve if the file has only polylines, flat for STL and glTF, the file's own "
+      "Subdivision scheme; auto: curve if the file has only polylines, flat for STL, glTF and 3MF, the file's own "
       "if it names one, loop if all faces are triangles, otherwise catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
@@ -81,6 +81,11 @@ void add_common_options(OptionList& list, CommonOptions& options) {
   list.add(Group::mesh, "--sharp ANGLE", &options.sharp,
            "For parts from CAD: edges whose face normals differ by more than ANGLE degrees stay sharp, and "
            "flat regions stay flat; auto: 30");
+  list.add(Group::mesh, "--scale FACTOR", &options.scale, "Multiply coordinates by this, before anything else")
+      .between(1e-100, 1e100);
+  list.add(Group::mesh, "--units UNIT", &options.units,
+           "What the coordinates' units are, after --scale; default: what the file says (USD, 3MF, glTF: m)")
+      .one_of(unit_words());
   add_output_options(list, options);
 }
 
@@ -150,6 +155,7 @@ namespace {
 
 // A mesh that has been read and welded, sharpened as the options say.
 ControlMesh prepared(ControlMesh mesh, const std::string& path, const CommonOptions& options) {
+  set_units(mesh, path, options);
   note_coincidences(mesh, path, options);
   if (const auto sharp = sharp_angle(options)) sharpen_mesh(mesh, path, *sharp, options);
   return mesh;
@@ -162,13 +168,22 @@ ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
   static_cast<void>(sharp_angle(options));
   ProgressBar bar("reading " + path, options.quiet);
   const WorkMonitor monitor = bar.monitor();
-  const ReadOptions reading{weld_distance(options), notes_for(options)};
+  const ReadOptions reading{weld_distance(options), notes_for(options), {}};
   return prepared(read_mesh(path, reading, {.monitor = &monitor}), path, options);
 }
 
-ControlMesh mesh_of(std::string_view bytes, const std::string& path, const CommonOptions& options) {
-  const ReadOptions reading{weld_distance(options), notes_for(options)};
+ControlMesh mesh_of(std::string_view bytes, const std::string& path, const CommonOptions& options,
+                    OtherFile other_file) {
+  const ReadOptions reading{weld_distance(options), notes_for(options), std::move(other_file)};
   return prepared(parse_mesh(bytes, path, reading), path, options);
+}
+
+MeshAssembly assembly_of(std::string_view bytes, const std::string& path, const CommonOptions& options,
+                         OtherFile other_file) {
+  const ReadOptions reading{weld_distance(options), notes_for(options), std::move(other_file)};
+  MeshAssembly assembly = parse_assembly(bytes, path, reading);
+  for (ControlMesh& mesh : assembly.meshes) mesh = prepared(std::move(mesh), path, options);
+  return assembly;
 }
 
 void naming(const std::string& path, const std::function<void()>& work) {
@@ -197,6 +212,27 @@ Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOpti
   return *surface;
 }
 
+std::optional<double> units_of(const Surface& surface) { return surface.mesh().metres_per_unit; }
+
+std::optional<double> common_units(std::span<const Surface> surfaces, std::span<const std::string> names) {
+  std::optional<std::size_t> known;
+  bool all = true;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const std::optional<double> own = units_of(surfaces[i]);
+    all = all && own;
+    if (!own) continue;
+    if (known && *own != *units_of(surfaces[*known])) {
+      throw InputError(InputProblem::refused,
+                       names[*known] + " is in " + text_of_unit(*units_of(surfaces[*known])) + ", " + names[i] +
+                           " in " + text_of_unit(*own) +
+                           ": bring both to one unit, such as by --scale-b 25.4 --units mm, or say by --units that they "
+                           "have it");
+    }
+    known = i;
+  }
+  return all && known ? units_of(surfaces[*known]) : std::nullopt;
+}
+
 void require_closed(const Surface& surface) {
   if (const auto reason = surface.open_reason()) refuse_open(*reason);
 }
@@ -208,7 +244,8 @@ void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& pa
 }
 
 void write_facets(ControlMesh mesh, AtomicFile& file, const std::string& path, const CommonOptions& options,
-                  std::span<const Vector3> normals) {
+                  std::optional<double> units, std::span<const Vector3> normals) {
+  mesh.metres_per_unit = units;
   if (format_of(path).scheme) mesh.tags.scheme = Scheme::flat;
   write_mesh(mesh, file, path, options, normals);
 }

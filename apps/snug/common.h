@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,12 @@ struct CommonOptions {
   std::uint64_t max_splits = default_splits::bound;
   std::string weld;   ///< a length; empty: only equal vertices of STL and glTF files are
   std::string sharp;  ///< an angle or auto; empty: only what tags make sharp
+  std::string units;  ///< of coordinates, after --scale; empty: those that the file states
+  double scale = 1;   ///< coordinates are multiplied by it
   bool quiet = false;
 };
 
-/// Those of every command: --scheme, --boundary, --weld, --sharp, and those below.
+/// Those of every command: --scheme, --boundary, --weld, --sharp, --scale, --units, and those below.
 void add_common_options(OptionList& list, CommonOptions& options);
 /// Those of commands without a mesh: --json, -o, --quiet, --threads.
 void add_output_options(OptionList& list, CommonOptions& options);
@@ -64,12 +67,18 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// Where notes of readers and writers go: standard error, unless quiet, each line once.
 [[nodiscard]] Notes notes_for(const CommonOptions& options);
 
+/// Reads a file that another one names: ReadOptions::other_file.
+using OtherFile = std::function<std::string(const std::string& path)>;
+
 /// Reads a control mesh, welds and sharpens it as the options say.
 /// Errors:    UsageError for --weld that is no length and --sharp that is no angle, or for curves.
 [[nodiscard]] ControlMesh load_mesh(const std::string& path, const CommonOptions& options);
 /// The same for the bytes that the file holds.
 [[nodiscard]] ControlMesh mesh_of(std::string_view bytes, const std::string& path,
-                                  const CommonOptions& options);
+                                  const CommonOptions& options, OtherFile other_file = {});
+/// The same for all meshes of a file, each as it is.
+[[nodiscard]] MeshAssembly assembly_of(std::string_view bytes, const std::string& path,
+                                       const CommonOptions& options, OtherFile other_file);
 
 /// Reads a mesh and makes its surface. Refusals name the file.
 [[nodiscard]] Surface read_surface(const std::string& path, const CommonOptions& options,
@@ -77,6 +86,12 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// The same for a mesh that has been read from `path`.
 [[nodiscard]] Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
                                    const std::string& scheme);
+/// Metres of a unit of its mesh, if they are known.
+[[nodiscard]] std::optional<double> units_of(const Surface& surface);
+/// The same of several that one answer is about; `names`: their files.
+/// Errors:    InputError (refused) if the units of two are known and differ.
+[[nodiscard]] std::optional<double> common_units(std::span<const Surface> surfaces,
+                                                 std::span<const std::string> names);
 /// Throws InputError (refused) unless the surface bounds a solid.
 void require_closed(const Surface& surface);
 /// Calls `work` and puts the name of the file in front of refusals it throws.
@@ -85,9 +100,9 @@ void naming(const std::string& path, const std::function<void()>& work);
 /// Writes a mesh into a file that was opened for `path`.
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path,
                 const CommonOptions& options, std::span<const Vector3> normals = {});
-/// The same for faces that are meant as they are, which is said where the format names schemes.
+/// The same for faces that are meant as they are, which is said where the format names schemes; `units`: metres of one.
 void write_facets(ControlMesh mesh, AtomicFile& file, const std::string& path, const CommonOptions& options,
-                  std::span<const Vector3> normals = {});
+                  std::optional<double> units, std::span<const Vector3> normals = {});
 
 /// The method that --bounds names.
 [[nodiscard]] BoundMethod bound_method(const CommonOptions& options);

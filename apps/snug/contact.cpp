@@ -240,9 +240,9 @@ ExitStatus run(const Options& options) {
   const WorkMonitor monitor = bar.monitor();
   const MovingArguments moving(options, monitor);
   TimeOfContactOptions wanted;
-  wanted.tolerance = tolerance.in_mesh_units(moving.pair.size());
+  wanted.tolerance = tolerance.in_mesh_units(moving.pair.size(), moving.pair.units());
   if (!options.margin.empty())
-    wanted.margin = parse_length(options.margin, "--margin", true).in_mesh_units(moving.pair.size());
+    wanted.margin = parse_length(options.margin, "--margin", true).in_mesh_units(moving.pair.size(), moving.pair.units());
   wanted.solid = options.solid;
   Report report("time-of-contact", options);
   moving.pair.write_heads(report);
@@ -268,7 +268,7 @@ ExitStatus run_clearance(const Options& options) {
     wanted.absolute =
         options.absolute.empty()
             ? 0
-            : parse_length(options.absolute, "--absolute", true).in_mesh_units(moving.pair.size());
+            : parse_length(options.absolute, "--absolute", true).in_mesh_units(moving.pair.size(), moving.pair.units());
     wanted.relative = options.relative;
   } else {
     wanted.absolute = 1e-3 * moving.pair.size();

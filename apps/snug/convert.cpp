@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <support/atomic_file.h>
+#include <support/error.h>
 #include <support/read_file.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, scene, error, name, units = "mm", protocol = "ap242";
+  std::string mesh, scene, error, name, protocol = "ap242";
   double max_angle = 0;
   bool nearest_rigid = false;
 };
@@ -31,7 +32,7 @@ LengthUnit unit_named(const std::string& name) {
 
 double error_of(const Options& options, const Surface& surface) {
   const Length length = parse_length(options.error.empty() ? "0.01%" : options.error, "--error");
-  return length.in_mesh_units(surface.size(), options.units);
+  return length.in_mesh_units(surface.size(), metres_of(options.units));
 }
 
 std::string name_of_part(const Options& options) {
@@ -134,12 +135,32 @@ Job read_all(const Options& options, const WorkMonitor& monitor) {
   return job;
 }
 
-ExitStatus run(const Options& options) {
+// What the files state, if STEP has a word for it here; millimetres where they state nothing.
+std::string units_of_files(const Job& job) {
+  std::string unit;
+  for (std::size_t i = 0; i < job.surfaces.size(); ++i) {
+    const std::optional<double> metres = units_of(job.surfaces[i]);
+    const std::string own = metres ? text_of_unit(*metres) : "mm";
+    if (own != "mm" && own != "cm" && own != "m" && own != "inch") {
+      throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own +
+                                                  ": STEP files are written in mm, cm, m or inch; give --scale and --units");
+    }
+    if (i > 0 && own != unit) {
+      throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own + ", " + job.meshes[0] + " in " + unit +
+                                                  ": give --units, if all are in one unit");
+    }
+    unit = own;
+  }
+  return unit;
+}
+
+ExitStatus run(Options options) {
   if (options.output.empty()) throw UsageError("convert: -o FILE.step is missing: where the solid goes");
   if (options.json && options.output == "-")
     throw UsageError("convert: --json and -o - both want standard output");
   if (!options.error.empty()) static_cast<void>(parse_length(options.error, "--error"));
   Job job = read_all(options, stopped_by_interrupts());
+  options.units = units_of_files(job);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("convert", to_standard_output);
@@ -179,7 +200,7 @@ Command convert_command() {
   options->max_splits = default_splits::brep;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)")
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)")
       .unless("--scene");
   list.add(Group::own, "--scene FILE", &options->scene,
            "A scene file instead: an assembly, in which its parts are placed");
@@ -190,8 +211,6 @@ Command convert_command() {
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle between faces across edges where the surface is smooth; 0 for any")
       .between(0, 90);
-  list.add(Group::own, "--units UNIT", &options->units, "Units of the mesh")
-      .one_of({"mm", "cm", "m", "inch"});
   list.add(Group::own, "--name NAME", &options->name, "Name of the part or assembly; default: the file's");
   list.add(Group::own, "--protocol NAME", &options->protocol, "Application protocol of the STEP file")
       .one_of({"ap242", "ap214"});

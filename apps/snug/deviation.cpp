@@ -10,6 +10,7 @@
 #include "answer_writer.h"
 #include "curve.h"
 #include "length.h"
+#include "mesh_reading.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -64,7 +65,8 @@ Candidate read_candidate(const Options& options) {
   }
   ProgressBar bar("reading " + path, options.quiet);
   const WorkMonitor monitor = bar.monitor();
-  const ControlMesh mesh = read_mesh(path, {{}, notes_for(options)}, {.monitor = &monitor});
+  ControlMesh mesh = read_mesh(path, {{}, notes_for(options), {}}, {.monitor = &monitor});
+  set_units(mesh, path, options);
   if (mesh.face_count() == 0) {
     throw InputError(InputProblem::refused,
                      path + ": there are no triangles to compare; give a mesh with faces");
@@ -195,8 +197,8 @@ ExitStatus run(const Options& options) {
   const Surface surface = read_surface(options.mesh, options, options.scheme);
   const Candidate candidate = read_candidate(options);
   DeviationOptions wanted;
-  wanted.absolute = precision.in_mesh_units(surface.size());
-  if (tolerance) wanted.threshold = tolerance->in_mesh_units(surface.size());
+  wanted.absolute = precision.in_mesh_units(surface.size(), units_of(surface));
+  if (tolerance) wanted.threshold = tolerance->in_mesh_units(surface.size(), units_of(surface));
   wanted.solid = options.solid;
   Deviation answer;
   {
@@ -239,7 +241,7 @@ Command deviation_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::deviation;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
   list.add(Group::own, "CANDIDATE", &options->candidate,
            "Triangles to compare with the limit surface, such as a tessellation or a scan");
   list.add(Group::own, "--absolute LENGTH", &options->precision,

@@ -57,20 +57,21 @@ ExitStatus run_scene(const Options& options) {
   ProgressBar bar("measuring", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   SceneRun run(options, monitor);
+  const double within = limit.in_mesh_units(0, run.units());
   if (options.solid) run.require_closed();
   const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
   CertificateFile certificate(options);
   if (certificate.wanted()) run.require_alone();
   KeptAnswers<PairDistance> proved;
   SceneQuestion question;
-  question.key = fmt::format("{} {} {} {} {}", precision.number, precision.percent, options.relative,
+  question.key = fmt::format("{} {}{} {} {} {}", precision.number, precision.percent, precision.unit, options.relative,
                              options.solid, options.max_splits);
-  question.margin = limit.number;
+  question.margin = within;
   question.margins = false;
   question.header = "lower upper ax ay az bx by bz";
   question.ask = [&](const ScenePair& pair, Workspace& workspace, SceneAnswer& answer, JsonWriter* json) {
     DistanceOptions wanted;
-    wanted.absolute = precision.in_mesh_units(run.size_of(pair.parts));
+    wanted.absolute = precision.in_mesh_units(run.size_of(pair.parts), run.units());
     wanted.relative = options.relative;
     wanted.solid = options.solid;
     const std::optional<Distance> found =
@@ -88,13 +89,13 @@ ExitStatus run_scene(const Options& options) {
   if (certificate.wanted()) {
     question.prove = [&](Report& report, std::vector<AtomicFile*>& files) {
       const DistanceOptions wanted{.solid = options.solid};
-      certify(run.scene(), limit.number, wanted, proved.all(), certificate.with(run_of(options, quiet)));
+      certify(run.scene(), within, wanted, proved.all(), certificate.with(run_of(options, quiet)));
       certificate.add_to(report, files);
     };
   }
   question.head = [&](JsonWriter& json) {
-    json.field("limit", limit.number).key("absolute");
-    precision.percent ? json.value(fmt::format("{}%", precision.number)) : json.value(precision.number);
+    json.field("limit", within).key("absolute");
+    precision.percent ? json.value(fmt::format("{}%", precision.number)) : json.value(precision.in_mesh_units(1, run.units()));
     json.field("relative", options.relative);
   };
   return run.answer(question, "distance", false);
@@ -105,7 +106,7 @@ ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--absolute", true);
   PairArguments pair(options);
   DistanceOptions wanted;
-  wanted.absolute = precision.in_mesh_units(pair.size());
+  wanted.absolute = precision.in_mesh_units(pair.size(), pair.units());
   wanted.relative = options.relative;
   wanted.solid = options.solid;
   ProgressBar bar("measuring", options.quiet);

@@ -40,7 +40,8 @@ struct Wrapped {
   std::string name;  // of the file
   std::vector<std::string> meshes, schemes;
   std::vector<PlacedSurface> parts;
-  double size = 0;  // that lengths in percent are of
+  double size = 0;                  // that lengths in percent are of
+  std::optional<double> units{};  // in metres
 };
 
 // Where a part is: its surface and the envelope are `clearance` apart; nothing where it is undecided whether
@@ -140,7 +141,7 @@ void write_summary(Report& report, const Options& options, const Wrapped& wrappe
 Wrapped read_wrapped(const Options& options, const WorkMonitor& monitor) {
   if (options.scene.empty()) {
     const Surface surface = read_surface(options.mesh, options, options.scheme);
-    return {options.mesh, {options.mesh}, {name_of(surface.scheme())}, {surface}, surface.size()};
+    return {options.mesh, {options.mesh}, {name_of(surface.scheme())}, {surface}, surface.size(), units_of(surface)};
   }
   const LoadedScene scene = load_scene(
       options.scene, options, options.nearest_rigid,
@@ -150,6 +151,7 @@ Wrapped read_wrapped(const Options& options, const WorkMonitor& monitor) {
     wrapped.meshes.push_back(scene.text.meshes[i].file);
     wrapped.schemes.push_back(name_of(scene.surfaces[i].scheme()));
   }
+  wrapped.units = common_units(scene.surfaces, wrapped.meshes);
   // As envelope() takes it: of the box around all.
   const SceneBroadPhase broad(scene.scene, 0, false, run_of(options, monitor));
   Box3 all;
@@ -163,9 +165,9 @@ Found find(const Wrapped& wrapped, const Options& options, double error, const W
   EnvelopeOptions how{.error = error};
   how.single_precision = !options.output.empty() && format_of(options.output).floats;
   if (!options.clearance.empty()) {
-    how.clearance = parse_length(options.clearance, "--clearance").in_mesh_units(wrapped.size);
+    how.clearance = parse_length(options.clearance, "--clearance").in_mesh_units(wrapped.size, wrapped.units);
   }
-  if (!options.gap.empty()) how.gap = parse_length(options.gap, "--gap").in_mesh_units(wrapped.size);
+  if (!options.gap.empty()) how.gap = parse_length(options.gap, "--gap").in_mesh_units(wrapped.size, wrapped.units);
   Envelope wrap = envelope(wrapped.parts, how, run_of(options, monitor));
   Found found;
   const Surface& surface = wrapped.parts.front().surface();
@@ -207,7 +209,7 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("making an envelope of " + wrapped.name, options.quiet);
   const WorkMonitor monitor = bar.monitor();
   naming(wrapped.name, [&] {
-    error = parse_length(options.error, "--error").in_mesh_units(wrapped.size);
+    error = parse_length(options.error, "--error").in_mesh_units(wrapped.size, wrapped.units);
     found = find(wrapped, options, error, monitor);
   });
   const bool complete = found.hulls.outcome == Outcome::complete;
@@ -219,7 +221,7 @@ ExitStatus run(const Options& options) {
   const bool reached = complete && (!fit || fit->inside);
   if (options.output.empty() || !complete) return report.finish(reached);
   AtomicFile file(options.output);
-  write_facets(mesh_of(*found.hulls.outer), file, options.output, options);
+  write_facets(mesh_of(*found.hulls.outer), file, options.output, options, wrapped.units);
   return report.finish(reached, {&file});
 }
 
@@ -230,7 +232,7 @@ Command envelope_command() {
   options->max_splits = default_splits::envelope;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input), open or closed")
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input), open or closed")
       .unless("--scene");
   list.add(Group::own, "--scene FILE", &options->scene,
            "Wrap all parts that a JSON file names and places together, instead of MESH");

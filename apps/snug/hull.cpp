@@ -33,7 +33,7 @@ void require_options(const Options& options) {
 
 HullOptions how_to(const Options& options, const Surface& surface) {
   HullOptions how;
-  how.error = parse_length(options.error, "--error").in_mesh_units(surface.size());
+  how.error = parse_length(options.error, "--error").in_mesh_units(surface.size(), units_of(surface));
   how.inner = !options.inner.empty();
   how.outer = !options.outer.empty();
   how.single_precision =
@@ -88,7 +88,7 @@ ExitStatus run(const Options& options) {
   std::deque<AtomicFile> files;
   for (const auto& [hull, path] : {std::pair{&found.inner, &options.inner}, {&found.outer, &options.outer}}) {
     if (!*hull || found.outcome != Outcome::complete) continue;
-    write_facets(mesh_of(**hull), files.emplace_back(*path), *path, options);
+    write_facets(mesh_of(**hull), files.emplace_back(*path), *path, options, units_of(surface));
   }
   write_summary(report, options, surface, *how.error, found);
   std::vector<AtomicFile*> written;
@@ -103,12 +103,12 @@ Command hull_command() {
   options->max_splits = default_splits::hull;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   list.add(Group::own, "--error LENGTH", &options->error,
            "Largest distance between limit surface and hulls, either way; mesh units or percent, such as 1%")
       .formerly("--tolerance");
   list.add(Group::own, "--inner FILE", &options->inner,
-           "Write the hull behind the surface, inside the solid (OBJ, OFF, PLY, STL, USD or glTF)");
+           "Write the hull behind the surface, inside the solid (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
   list.add(Group::own, "--outer FILE", &options->outer,
            "Write the hull in front of the surface, around the solid");
   add_common_options(list, *options);

@@ -62,7 +62,7 @@ Command info_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   add_common_options(list, *options);
   return {"info",
           Topic::files,

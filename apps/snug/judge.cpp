@@ -255,6 +255,7 @@ ExitStatus run(const Options& options) {
                       }};
   const WorkMonitor monitor = stopped_by_interrupts();
   ControlMesh mesh = read_mesh(options.mesh, reading, {.monitor = &monitor});
+  set_units(mesh, options.mesh, options);
   if (angle) sharpen_mesh(mesh, options.mesh, *angle, options);
   Report report("judge", options);
   const MeshSummary summary = summary_of(mesh, options.mesh, options);
@@ -289,7 +290,7 @@ Command judge_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   list.add(Group::effort, "--seconds N", &options->seconds, "Longest time for one question")
       .between(1, 86'400);
   add_common_options(list, *options);

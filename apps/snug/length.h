@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace snug::command {
 
@@ -15,12 +17,21 @@ class UsageError : public std::runtime_error {
 struct Length {
   double number = 0;
   bool percent = false;
-  std::string unit{};  ///< mm, cm, m or inch; empty for none
-  /// In mesh units, for a mesh whose longest side is `size`, and whose units are these, if they are known.
-  /// Errors:    InputError (refused) if that is not a positive, finite double; UsageError for a unit where the mesh's are
+  std::string unit{};  ///< one of unit_words(); empty for none
+  /// In mesh units, for a mesh whose longest side is `size`, and whose unit is so many metres, if that is known.
+  /// Errors:    InputError (refused) if that is not a positive, finite double; UsageError for a unit where the mesh's is
   ///            not known.
-  [[nodiscard]] double in_mesh_units(double size, const std::string& units = {}) const;
+  [[nodiscard]] double in_mesh_units(double size, std::optional<double> metres_per_unit = {}) const;
 };
+
+/// The units of --units.
+[[nodiscard]] std::vector<std::string> unit_words();
+/// Metres of one of them.
+[[nodiscard]] double metres_of(const std::string& unit);
+/// "mm"; "units of 0.1 m" for what has no word.
+[[nodiscard]] std::string text_of_unit(double metres);
+/// The word; nothing if there is none.
+[[nodiscard]] std::optional<std::string> unit_of(double metres);
 
 /// Errors:    UsageError naming `option` unless the text is a finite number, with or without % or a unit, that is >= 0,
 ///            or > 0 where zero is not allowed.

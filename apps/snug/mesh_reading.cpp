@@ -1,11 +1,13 @@
 #include "mesh_reading.h"
 
 #include <charconv>
+#include <cmath>
 
 #include <fmt/core.h>
 #include <snug/evaluate.h>
 #include <snug/inspect.h>
 #include <snug/mesh.h>
+#include <support/error.h>
 #include <support/number.h>
 
 #include "curve.h"
@@ -14,9 +16,25 @@ namespace snug::command {
 
 std::function<double(double)> weld_distance(const CommonOptions& options) {
   if (options.weld.empty()) return {};
-  return [length = parse_length(options.weld, "--weld", true)](double size) {
-    return length.in_mesh_units(size);
+  std::optional<double> metres;  // of a unit before --scale
+  if (!options.units.empty()) metres = options.scale * metres_of(options.units);
+  return [length = parse_length(options.weld, "--weld", true), metres](double size) {
+    return length.in_mesh_units(size, metres);
   };
+}
+
+void set_units(ControlMesh& mesh, const std::string& path, const CommonOptions& options) {
+  if (options.scale != 1) {
+    for (Point3& point : mesh.points) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        point[axis] *= options.scale;
+        if (!std::isfinite(point[axis]))
+          throw InputError(InputProblem::refused, path + ": --scale brings a coordinate beyond the range of doubles");
+      }
+    }
+    mesh.metres_per_unit.reset();
+  }
+  if (!options.units.empty()) mesh.metres_per_unit = metres_of(options.units);
 }
 
 std::vector<Finding> coincidences_found(const ControlMesh& mesh) {

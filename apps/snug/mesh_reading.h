@@ -12,6 +12,10 @@ namespace snug::command {
 /// Errors:    UsageError for what is no length.
 [[nodiscard]] std::function<double(double)> weld_distance(const CommonOptions& options);
 
+/// Multiplies coordinates by --scale, and notes the units of --units; a file's own are those before --scale.
+/// Errors:    InputError (refused) if a coordinate leaves the range of doubles.
+void set_units(ControlMesh& mesh, const std::string& path, const CommonOptions& options);
+
 /// A trait of a mesh or its surface that may not be meant.
 struct Finding {
   std::string kind;   ///< such as "needles"

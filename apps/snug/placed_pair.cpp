@@ -7,7 +7,7 @@
 namespace snug::command {
 
 void add_pair_options(OptionList& list, PairOptions& options, bool many) {
-  list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
   if (many) {
     list.at("A").unless("--scene");
@@ -35,8 +35,12 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many) {
   add_bound_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme");
   add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B; overrides --scheme");
+  list.add(Group::mesh, "--scale-a FACTOR", &options.scale_a, "Multiply coordinates of A by this; overrides --scale")
+      .between(1e-100, 1e100);
+  list.add(Group::mesh, "--scale-b FACTOR", &options.scale_b, "Multiply coordinates of B by this; overrides --scale")
+      .between(1e-100, 1e100);
   if (!many) return;
-  for (const char* name : {"--place", "--rotate", "--move", "--scheme"}) {
+  for (const char* name : {"--place", "--rotate", "--move", "--scheme", "--scale"}) {
     for (const char* side : {"-a", "-b"}) list.at(name + std::string(side)).excludes("--scene");
   }
 }
@@ -60,17 +64,22 @@ PairArguments::PairArguments(const PairOptions& options) : options_(options) {
   const Mending mending{options.nearest_rigid, notes_for(options)};
   const Motion pose_a = pose_of(options.pose_a, "-a", mending),
                pose_b = pose_of(options.pose_b, "-b", mending);
-  const auto load = [&](const std::string& mesh, const std::string& own, const char* option) {
+  const auto load = [&](const std::string& mesh, const std::string& own, double scale, const char* option) {
+    CommonOptions reading = options;
+    if (scale > 0) reading.scale = scale;
     try {
-      return read_surface(mesh, options, own.empty() ? options.scheme : own);
+      return read_surface(mesh, reading, own.empty() ? options.scheme : own);
     } catch (const InputError& error) {
       if (error.problem() != InputProblem::refused || options.scheme == "auto" || !own.empty()) throw;
       throw InputError(error.problem(),
                        fmt::format("{}; {} names the scheme of this mesh alone", error.what(), option));
     }
   };
-  a_.emplace(load(options.mesh_a, options.scheme_a, "--scheme-a"), pose_a);
-  b_.emplace(load(options.mesh_b, options.scheme_b, "--scheme-b"), pose_b);
+  a_.emplace(load(options.mesh_a, options.scheme_a, options.scale_a, "--scheme-a"), pose_a);
+  b_.emplace(load(options.mesh_b, options.scheme_b, options.scale_b, "--scheme-b"), pose_b);
+  const std::array surfaces{a_->surface(), b_->surface()};
+  const std::array names{options.mesh_a, options.mesh_b};
+  units_ = common_units(surfaces, names);
 }
 
 void PairArguments::prepare(const WorkMonitor& monitor) const {

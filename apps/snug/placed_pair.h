@@ -17,6 +17,7 @@ struct PairOptions : CommonOptions {
   PoseOptions pose_a, pose_b;
   bool nearest_rigid = false;
   std::string poses;         ///< a file of poses; empty for none
+  double scale_a = 0, scale_b = 0;  ///< in place of --scale; 0: that
   bool moves = false;        ///< other options have poses, too
   std::string scene;         ///< a file of many parts, in place of both meshes; empty for none
   std::string journal;       ///< --resume; empty for none
@@ -47,6 +48,8 @@ class PairArguments {
   [[nodiscard]] bool nearest_rigid() const { return options_.nearest_rigid; }
   [[nodiscard]] int threads() const { return options_.threads; }
   [[nodiscard]] Notes notes() const { return notes_for(options_); }
+  /// Metres of a unit, if both have the same one.
+  [[nodiscard]] std::optional<double> units() const { return units_; }
   /// Of the longer one.
   [[nodiscard]] double size() const { return std::max(a_->surface().size(), b_->surface().size()); }
   /// The fields of both in the head of a report.
@@ -55,6 +58,7 @@ class PairArguments {
  private:
   const PairOptions& options_;
   std::optional<PlacedSurface> a_, b_;
+  std::optional<double> units_;
 };
 
 }  // namespace snug::command

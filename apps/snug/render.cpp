@@ -246,7 +246,10 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
       const Surface* surface = part.surface();
       const CurveSet* curves = part.curves();
       const std::uint64_t more_a_split = pieces_of(part).children - 1;
-      if (tolerance) how.error = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
+      if (tolerance) {
+        how.error = curves ? tolerance->in_mesh_units(curves->size())
+                           : tolerance->in_mesh_units(surface->size(), units_of(*surface));
+      }
       ProgressBar bar("bounding " + part.path, options.quiet);
       const WorkMonitor monitor = bar.monitor();
       Run run = run_of(options, monitor);
@@ -573,7 +576,7 @@ Command render_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->meshes,
-           "Control meshes (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control meshes (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
   list.add(Group::own, "--samples N", &options->samples, "N * N rays per pixel, N from 1 to 16")
       .between(1, 16);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -185,7 +186,7 @@ class SceneReader {
  private:
   void add_part(const Json& part, const std::string& where) {
     if (!part.is_object()) fail_kind(where, part, "an object with \"mesh\"");
-    require_names(part, where + ": ", {"name", "mesh", "scheme", "boundary", "sharp", "weld", "place"});
+    require_names(part, where + ": ", {"name", "mesh", "scheme", "boundary", "sharp", "weld", "scale", "units", "place"});
     if (!part.contains("mesh")) fail(where + ": \"mesh\" is missing");
     const std::uint32_t place = static_cast<std::uint32_t>(scene_.parts.size());
     const std::string name =
@@ -212,12 +213,15 @@ class SceneReader {
     };
     take("scheme", options.scheme);
     take("boundary", options.boundary);
+    take("units", options.units);
+    if (part.contains("scale")) options.scale = number_of(part["scale"], where + ".scale");
     for (const auto& [name, option] : {std::pair{"sharp", &options.sharp}, {"weld", &options.weld}}) {
       if (!part.contains(name)) continue;
       const Json& value = part[name];
       *option = value.is_number() ? shortest(number_of(value, where)) : text_of(value, where + "." + name);
     }
-    const auto key = std::tuple(path, options.scheme, options.boundary, options.sharp, options.weld);
+    const auto key = std::tuple(path, options.scheme, options.boundary, options.sharp, options.weld, options.scale,
+                                options.units);
     const auto [known, fresh] = meshes_.emplace(key, static_cast<std::uint32_t>(scene_.meshes.size()));
     if (fresh) {
       require_words(options, where);
@@ -236,9 +240,12 @@ class SceneReader {
       std::map<std::string, std::vector<std::string>> given;
       if (!options.scheme.empty()) given["--scheme"] = {options.scheme};
       if (!options.boundary.empty()) given["--boundary"] = {options.boundary};
+      if (!options.units.empty()) given["--units"] = {options.units};
+      if (options.scale != 1) given["--scale"] = {shortest(options.scale)};
       list.assign(given);
       options.scheme = words.scheme;
       options.boundary = words.boundary;
+      options.units = words.units;
       static_cast<void>(weld_distance(options));
       static_cast<void>(sharp_angle(options));
     } catch (const UsageError& error) {
@@ -330,7 +337,8 @@ class SceneReader {
   Mending mending_;
   SceneText scene_;
   std::unordered_map<std::string, std::uint32_t> names_;
-  std::map<std::tuple<std::string, std::string, std::string, std::string, std::string>, std::uint32_t>
+  std::map<std::tuple<std::string, std::string, std::string, std::string, std::string, double, std::string>,
+           std::uint32_t>
       meshes_;
 };
 
@@ -343,8 +351,7 @@ SurfaceOptions options_for(const SceneMesh& mesh, const ControlMesh& control) {
   }
 }
 
-Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMonitor& monitor) {
-  ControlMesh control = mesh_of(bytes, mesh.file, mesh.options);
+Surface surface_of(ControlMesh control, const SceneMesh& mesh, const WorkMonitor& monitor) {
   refuse_curves(control, mesh.options.scheme, mesh.file);
   std::optional<Surface> surface;
   naming(mesh.file, [&] {
@@ -355,6 +362,69 @@ Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMoni
   });
   note_smoothing(*surface, mesh.file, mesh.options, mesh.options.scheme);
   return *surface;
+}
+
+}  // namespace
+
+namespace {
+
+// Formats that place several meshes.
+bool is_assembly(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = lower_case(c);
+  for (const char* known : {".gltf", ".glb", ".3mf", ".usda", ".usd"}) {
+    if (ending == known) return true;
+  }
+  return false;
+}
+
+// Reads files beside one, and takes each into a fingerprint.
+std::function<std::string(const std::string&)> beside(const std::string& path, const ReadBytes& read,
+                                                      std::uint64_t& of_all) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  return [folder, &read, &of_all](const std::string& other) {
+    std::string bytes = read((folder / other).string());
+    of_all = fingerprint(bytes, of_all);
+    return bytes;
+  };
+}
+
+// The scene that one file of several meshes is; its control meshes are left in `meshes`.
+SceneText scene_of_assembly(const std::string& bytes, const std::string& path, const CommonOptions& options,
+                            const ReadBytes& read, std::uint64_t& of_all, std::vector<ControlMesh>& meshes) {
+  MeshAssembly assembly = assembly_of(bytes, path, options, beside(path, read, of_all));
+  SceneText scene;
+  for (std::size_t i = 0; i < assembly.meshes.size(); ++i)
+    scene.meshes.push_back({fmt::format("{}#{}", path, i), fmt::format("{}#{}", path, i), options});
+  for (MeshAssembly::Part& part : assembly.parts) {
+    Vector3 offset = part.pose.offset();
+    for (std::size_t axis = 0; axis < 3; ++axis) offset[axis] *= options.scale;
+    scene.parts.push_back({std::move(part.name), part.mesh, part.pose.with_offset(offset)});
+  }
+  meshes = std::move(assembly.meshes);
+  return scene;
+}
+
+// The meshes that the scene file names. Those of formats with several files are read on this thread, in their order.
+std::vector<std::function<ControlMesh()>> meshes_of_text(const SceneText& text, const ReadBytes& read,
+                                                         std::map<std::string, std::string>& files,
+                                                         std::uint64_t& of_all) {
+  std::vector<std::function<ControlMesh()>> meshes;
+  for (const SceneMesh& mesh : text.meshes) {
+    const auto [file, fresh] = files.try_emplace(mesh.file);
+    if (fresh) {
+      file->second = read(mesh.file);
+      of_all = fingerprint(file->second, of_all);
+    }
+    const std::string& bytes = file->second;
+    if (is_assembly(mesh.file)) {
+      auto control = std::make_shared<ControlMesh>(mesh_of(bytes, mesh.file, mesh.options, beside(mesh.file, read, of_all)));
+      meshes.emplace_back([control] { return std::move(*control); });
+    } else {
+      meshes.emplace_back([&bytes, &mesh] { return mesh_of(bytes, mesh.file, mesh.options); });
+    }
+  }
+  return meshes;
 }
 
 }  // namespace
@@ -396,21 +466,20 @@ LoadedScene load_scene(const std::string& path, const CommonOptions& options, bo
   LoadedScene loaded;
   const std::string bytes = read(path);
   loaded.fingerprint = fingerprint(bytes);
-  loaded.text = parse_scene(bytes, path, options, nearest_rigid);
   std::map<std::string, std::string> files;
-  std::vector<const std::string*> contents;
-  for (const SceneMesh& mesh : loaded.text.meshes) {
-    const auto [file, fresh] = files.try_emplace(mesh.file);
-    if (fresh) {
-      file->second = read(mesh.file);
-      loaded.fingerprint = fingerprint(file->second, loaded.fingerprint);
-    }
-    contents.push_back(&file->second);
+  std::vector<std::function<ControlMesh()>> meshes;
+  std::vector<ControlMesh> of_assembly;
+  if (is_assembly(path)) {
+    loaded.text = scene_of_assembly(bytes, path, options, read, loaded.fingerprint, of_assembly);
+    for (ControlMesh& mesh : of_assembly) meshes.emplace_back([&mesh] { return std::move(mesh); });
+  } else {
+    loaded.text = parse_scene(bytes, path, options, nearest_rigid);
+    meshes = meshes_of_text(loaded.text, read, files, loaded.fingerprint);
   }
-  std::vector<std::optional<Surface>> surfaces(contents.size());
+  std::vector<std::optional<Surface>> surfaces(meshes.size());
   parallel_for(surfaces.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      surfaces[i] = surface_of(*contents[i], loaded.text.meshes[i], monitor);
+      surfaces[i] = surface_of(meshes[i](), loaded.text.meshes[i], monitor);
     }
   });
   for (const std::optional<Surface>& surface : surfaces) loaded.surfaces.push_back(*surface);

@@ -15,7 +15,7 @@ namespace snug::command {
 
 /// A mesh of a scene with the options it is read by: parts that say the same share it.
 struct SceneMesh {
-  std::string path;       ///< as the scene file names it
+  std::string path;       ///< as the scene file names it; in a file of several meshes FILE#0 and so on
   std::string file;       ///< relative paths begin at the scene file's folder
   CommonOptions options;  ///< those of the command line, with what the part says in place of some
 };
@@ -55,8 +55,8 @@ struct LoadedScene {
 /// The bytes of a file that all ranks of a job read together.
 using ReadBytes = std::function<std::string(const std::string& path)>;
 
-/// Reads a scene and its meshes, each file once.
-/// Errors:    those of parse_scene(), load_mesh() and Surface; refusals of a mesh name its file.
+/// Reads a scene and its meshes, each file once. A file of several meshes, such as glTF or 3MF, is a scene by its ending.
+/// Errors:    those of parse_scene(), read_assembly(), load_mesh() and Surface; refusals of a mesh name its file.
 [[nodiscard]] LoadedScene load_scene(const std::string& path, const CommonOptions& options,
                                      bool nearest_rigid, const ReadBytes& read, const WorkMonitor& monitor);
 

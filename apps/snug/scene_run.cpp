@@ -355,8 +355,12 @@ SceneRun::SceneRun(const PairOptions& options, const WorkMonitor& monitor)
     if (!ranks_) return read_file(path, monitor_);
     return ranks_->broadcast(ranks_->rank() == 0 ? read_file(path, monitor_) : std::string());
   };
-  reported_once(
-      [&] { loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_); });
+  reported_once([&] {
+    loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_);
+    std::vector<std::string> files;
+    for (const SceneMesh& mesh : loaded_.text.meshes) files.push_back(mesh.file);
+    units_ = common_units(loaded_.surfaces, files);
+  });
 }
 
 // All ranks refuse the same bytes: rank 0 tells, and ends all.
@@ -475,7 +479,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
     std::string key = fmt::format("{} {} {} {}", version_number, command, question.margin, question.key);
     for (const SceneMesh& mesh : loaded_.text.meshes) {
       const CommonOptions& own = mesh.options;
-      key += fmt::format("\n{}\t{}\t{}\t{}\t{}", own.scheme, own.boundary, own.sharp, own.weld, own.bounds);
+      key += fmt::format("\n{}\t{}\t{}\t{}\t{}\t{}", own.scheme, own.boundary, own.sharp, own.weld, own.bounds, own.scale);
     }
     journal.emplace(options_.journal, fingerprint(key, loaded_.fingerprint));
     std::error_code none;

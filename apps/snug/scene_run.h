@@ -67,6 +67,8 @@ class SceneRun {
   /// For --certificate.
   /// Errors:    InputError (refused) under mpirun, whose ranks do not send what proofs need.
   void require_alone() const;
+  /// Metres of a unit, if all meshes have the same one.
+  [[nodiscard]] std::optional<double> units() const { return units_; }
   /// The larger size of both parts.
   [[nodiscard]] double size_of(const PartPair& parts) const;
   [[nodiscard]] Sides sides_of(const PartPair& parts) const;
@@ -89,6 +91,7 @@ class SceneRun {
   WorkMonitor monitor_;
   std::unique_ptr<Ranks> ranks_;
   LoadedScene loaded_;
+  std::optional<double> units_;
 };
 
 }  // namespace snug::command

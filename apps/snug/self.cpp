@@ -61,8 +61,8 @@ ExitStatus run(const Options& options) {
   if (!options.radius.empty()) radius = parse_length(options.radius, "--radius");
   if (radius && !tolerance) throw UsageError("--radius needs --within");
   const Surface surface = read_surface(options.mesh, options, options.scheme);
-  if (tolerance) wanted.within = tolerance->in_mesh_units(surface.size());
-  if (radius) wanted.radius = radius->in_mesh_units(surface.size());
+  if (tolerance) wanted.within = tolerance->in_mesh_units(surface.size(), units_of(surface));
+  if (radius) wanted.radius = radius->in_mesh_units(surface.size(), units_of(surface));
   Report report("self-contact", options);
   SelfContact found;
   {
@@ -85,7 +85,7 @@ Command self_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::self_contact;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
   list.add(Group::own, "--within LENGTH", &options->tolerance,
            "Also decide whether points at most this far apart (mesh units, or percent of the size) are far "
            "apart "

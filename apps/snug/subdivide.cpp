@@ -40,6 +40,7 @@ ExitStatus run(const Options& options) {
   } else {
     refuse_curves(mesh, options.scheme, options.mesh);
   }
+  const std::optional<double> units = mesh.metres_per_unit;
   ControlMesh result;
   Scheme scheme{};
   naming(options.mesh, [&] {
@@ -55,6 +56,7 @@ ExitStatus run(const Options& options) {
     result = subdivided(std::move(mesh), options.level, options.limit, how, {.monitor = &monitor});
   });
   if (!curves && format_of(options.output).scheme) result.tags.scheme = scheme;
+  result.metres_per_unit = units;
   AtomicFile file(options.output);
   write_mesh(result, file, options.output, options);
   CommonOptions to_standard_output = options;
@@ -82,7 +84,7 @@ Command subdivide_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   list.add(Group::own, "--level N", &options->level, "Steps of subdivision, 0 to 12").between(0, 12);
   list.add(Group::own, "--limit", &options->limit, "Move every vertex to its limit position");
   add_degree_option(list, options->degree);

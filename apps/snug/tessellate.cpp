@@ -21,9 +21,9 @@ struct Options : CommonOptions {
   bool coarsen = false;
 };
 
-std::optional<double> length_of(const std::string& text, const char* option, double size) {
+std::optional<double> length_of(const std::string& text, const char* option, const Surface& surface) {
   if (text.empty()) return {};
-  return parse_length(text, option).in_mesh_units(size);
+  return parse_length(text, option).in_mesh_units(surface.size(), units_of(surface));
 }
 
 void require_options(const Options& options) {
@@ -51,9 +51,9 @@ void require_options(const Options& options) {
 
 TessellateOptions how_to(const Options& options, const Surface& surface) {
   TessellateOptions how;
-  how.error = length_of(options.error, "--error", surface.size());
-  how.max_edge = length_of(options.max_edge, "--max-edge", surface.size());
-  how.max_thickness = length_of(options.max_thickness, "--max-thickness", surface.size());
+  how.error = length_of(options.error, "--error", surface);
+  how.max_edge = length_of(options.max_edge, "--max-edge", surface);
+  how.max_thickness = length_of(options.max_thickness, "--max-thickness", surface);
   if (!options.eye.empty()) {
     const auto [x, y, z] = *parse_numbers<3>(options.eye);
     how.view = {{x, y, z}, options.eye_angle};
@@ -115,7 +115,7 @@ ExitStatus run(const Options& options) {
   });
   AtomicFile file(options.output);
   const Counts counts{result.positions.size(), result.triangles.size()};
-  write_facets(take_mesh(result), file, options.output, options, result.normals);
+  write_facets(take_mesh(result), file, options.output, options, units_of(surface), result.normals);
   report.heads({options.mesh}, {name_of(surface.scheme())});
   write_summary(report, options, counts, result);
   return report.finish(result.outcome == Outcome::complete, {&file});
@@ -128,7 +128,7 @@ Command tessellate_command() {
   options->max_splits = default_splits::tessellate;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
   list.add(Group::own, "--error LENGTH", &options->error,
            "Largest distance between limit surface and triangles, either way; mesh units or percent, such as "
            "0.1%")

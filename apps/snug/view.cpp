@@ -221,7 +221,7 @@ ExitStatus run(const Options& options) {
 Command view_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY, STL, USD or glTF)")
+  list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY, STL, USD, glTF or 3MF)")
       .unless("--scene");
   list.add(Group::own, "--scene FILE", &options->scene,
            "Show the parts that a JSON file names and places, instead of meshes");
@@ -234,9 +234,10 @@ Command view_command() {
            "Pose of the first mesh; repeat for the second, and so on")
       .excludes("--scene");
   add_nearest_rigid_option(list, options->nearest_rigid);
-  add_scheme_option(list, "--scheme", options->scheme,
-                    "Subdivision scheme; auto: flat for STL and glTF, the file's own if it names one, loop "
-                    "if all faces are triangles, otherwise catmark");
+  add_scheme_option(
+      list, "--scheme", options->scheme,
+      "Subdivision scheme; auto: flat for STL, glTF and 3MF, the file's own if it names one, loop "
+      "if all faces are triangles, otherwise catmark");
   list.add(Group::mesh, "--sharp ANGLE", &options->sharp,
            "Edges whose face normals differ by more than ANGLE degrees stay sharp; auto: 30");
   add_output_options(list, *options);

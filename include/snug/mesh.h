@@ -112,6 +112,8 @@ struct ControlMesh {
   MeshTags tags;
   std::vector<std::uint32_t> polyline_offsets{0};
   std::vector<VertexId> polyline_vertices;
+  /// The length of a unit, where the file says it: USD, 3MF; a metre in glTF. Nothing is scaled by it.
+  std::optional<double> metres_per_unit{};
 
   [[nodiscard]] std::size_t vertex_count() const { return points.size(); }
   [[nodiscard]] std::size_t face_count() const { return face_offsets.size() - 1; }
@@ -145,11 +147,14 @@ struct ReadOptions {
   /// faces or polylines use.
   std::function<double(double size)> weld{};
   Notes notes{};
+  /// The bytes of a file that this one names, such as the buffer of a .gltf, by its path relative to the folder of this one,
+  /// which it never leaves. Default: read_mesh() reads it there, parse_mesh() refuses.
+  std::function<std::string(const std::string& path)> other_file{};
 };
 
-/// Reads a control mesh. The extension selects the format: .obj, .off, .ply, .stl, .glb or .usda (also .usd, if
+/// Reads a control mesh. The extension selects the format: .obj, .off, .ply, .stl, .glb, .gltf, .3mf or .usda (also .usd, if
 /// it is text), in upper or lower case. Standard input ("-") and files without an extension are recognised as
-/// PLY, OFF, USD or glTF by their first bytes; otherwise they are read as OBJ.
+/// PLY, OFF, USD, glTF or 3MF by their first bytes; otherwise they are read as OBJ. All meshes of a file are one.
 ///
 /// Notes:     those of the parser, one line about what was welded, and one if creases name no edge of a face.
 /// Errors:    InputError: (unreadable) for a file that cannot be read or parsed, naming the line; those of
@@ -160,6 +165,28 @@ struct ReadOptions {
 /// The same for the bytes that such a file holds.
 [[nodiscard]] SNUG_API ControlMesh parse_mesh(std::string_view bytes, const std::string& path,
                                               const ReadOptions& options = {});
+
+/// The meshes of a file, and where it places them.
+struct MeshAssembly {
+  struct Part {
+    std::string name;        ///< as in the file, with "#2" where another part has it; a number without one
+    std::uint32_t mesh = 0;  ///< in `meshes`
+    Motion pose{};
+  };
+  std::vector<ControlMesh> meshes;
+  std::vector<Part> parts;
+};
+
+/// Reads a file of several meshes: nodes of .gltf and .glb, items of .3mf, prims of .usda. In other formats the mesh is one part.
+///
+/// Guarantee: a transform of the file that is a Motion up to rounding is the part's pose, and instances share their mesh;
+///            any other moves the points of a mesh of its own.
+/// Notes, errors: as read_mesh(), of each mesh; one note says how far rounding of the transforms moves a point.
+[[nodiscard]] SNUG_API MeshAssembly read_assembly(const std::string& path, const ReadOptions& options = {},
+                                                  const Run& run = {});
+/// The same for the bytes that such a file holds.
+[[nodiscard]] SNUG_API MeshAssembly parse_assembly(std::string_view bytes, const std::string& path,
+                                                   const ReadOptions& options = {});
 
 /// What the format of a file holds, by its extension.
 struct MeshFormat {
@@ -177,7 +204,7 @@ struct WriteOptions {
 };
 
 /// Writes a control mesh, completely or not at all. The extension selects the format: .obj, .off, .ply
-/// (binary, little endian), .stl (binary), .glb or .usda; "-" is OBJ on standard output.
+/// (binary, little endian), .stl (binary), .glb, .gltf, .3mf or .usda; "-" is OBJ on standard output.
 ///
 /// Notes:     one line for tags and one for polylines that the format cannot hold, and those of the format's
 ///            writer. STL and glTF mean their triangles as they are, OFF and PLY do not: for these there is a

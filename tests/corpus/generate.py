@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Writes the PLY, STL and glTF files of this folder: most are binary, so this is where to read what is in them."""
+"""Writes the PLY, STL, glTF and 3MF files of this folder: most are binary, so this is where to read what is in them."""
 
+import base64
+import io
 import json
 import math
 import pathlib
 import struct
+import zipfile
 
 FOLDER = pathlib.Path(__file__).parent
 POINTS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]  # as tetrahedron.off
@@ -226,3 +229,76 @@ put("draco.glb", gltf(extensionsRequired=["KHR_draco_mesh_compression"]))
 put("index_beyond.glb", gltf(binary=floats("<") + struct.pack("<12H", *range(12))))
 put("coordinate_nan.glb", gltf(binary=floats("<", [(math.nan, 0, 0)] + POINTS[1:]) + bytes(24)))
 put("lines.glb", gltf(meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "mode": 1}]}]))
+
+def gltf_text(uri=None, **changes):
+    """The same tetrahedron as text; its buffer is inside unless it is named."""
+    data = floats("<") + struct.pack("<12H", *sum(FACES, ()))
+    uri = uri or "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    container = gltf(data, buffers=[{"byteLength": 72, "uri": uri}], **changes)
+    return container[20:20 + struct.unpack("<I", container[12:16])[0]].rstrip() + b"\n"
+
+
+put("tetrahedron.gltf", gltf_text())
+put("buffer_beside.gltf", gltf_text("tetrahedron%2Ebin"))
+put("tetrahedron.bin", floats("<") + struct.pack("<12H", *sum(FACES, ())))
+put("two_nodes.gltf", gltf_text(nodes=[{"mesh": 0, "name": "a"}, {"mesh": 0, "name": "b", "translation": [3, 0, 0]}],
+                                scenes=[{"nodes": [0, 1]}]))
+put("buffer_outside.gltf", gltf_text("../tetrahedron.bin"))
+put("buffer_address.gltf", gltf_text("https://example.com/a.bin"))
+put("buffer_missing.gltf", gltf_text("nowhere.bin"))
+put("base64_truncated.gltf", gltf_text("data:;base64,AAAAA"))
+put("truncated.gltf", gltf_text()[:300])
+put("empty.gltf", b"")
+
+
+# --- 3MF -------------------------------------------------------------------------------------------------------------
+
+CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+RELATIONS = ('<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
+             'Target="/3D/m.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+MESH = ("<mesh><vertices>" + "".join('<vertex x="%g" y="%g" z="%g"/>' % p for p in POINTS) + "</vertices><triangles>"
+        + "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % f for f in FACES) + "</triangles></mesh>")
+ITEM = '<item objectid="1"/>'
+
+
+def model(objects, build=ITEM):
+    return f'<?xml version="1.0"?>\n<model unit="inch" xmlns="{CORE}"><resources>{objects}</resources><build>{build}</build></model>\n'
+
+
+def an_object(number, content):
+    return f'<object id="{number}" type="model">{content}</object>'
+
+
+def components(*numbers):
+    return "<components>" + "".join(f'<component objectid="{n}"/>' for n in numbers) + "</components>"
+
+
+def package(text, method=zipfile.ZIP_DEFLATED, relations=RELATIONS):
+    memory = io.BytesIO()
+    with zipfile.ZipFile(memory, "w", method) as archive:
+        for path, content in (("_rels/.rels", relations), ("3D/m.model", text)):
+            if content is not None:
+                archive.writestr(zipfile.ZipInfo(path, (1980, 1, 1, 0, 0, 0)), content, method)
+    return memory.getvalue()
+
+
+PLAIN = package(model(an_object(1, MESH)))
+put("tetrahedron.3mf", PLAIN)
+put("stored.3mf", package(model(an_object(1, MESH)), zipfile.ZIP_STORED))
+put("components.3mf", package(model(
+    an_object(1, MESH) + an_object(2, components(1).replace("/>", ' transform="0 1 0 -1 0 0 0 0 1 5 0 0"/>')),
+    ITEM + '<item objectid="2" transform="1 0 0 0 1 0 0 0 1 0 0 7"/>')))
+put("entities.3mf", package('<!DOCTYPE m [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]><model unit="&b;"/>'))
+put("zip_bomb.3mf", package(model(an_object(1, MESH)) + " " * 8_000_000))
+put("component_cycle.3mf", package(model(an_object(1, components(2)) + an_object(2, components(1)))))
+put("component_bomb.3mf", package(model(
+    an_object(1, MESH) + "".join(an_object(k, components(*[k - 1] * 10)) for k in range(2, 20)),
+    '<item objectid="19"/>')))
+put("no_items.3mf", package(model(an_object(1, MESH), "")))
+put("index_beyond.3mf", package(model(an_object(1, MESH.replace('v3="3"', 'v3="9"')))))
+put("coordinate_nan.3mf", package(model(an_object(1, MESH.replace('x="1"', 'x="nan"')))))
+put("no_model.3mf", package(None))
+put("no_relations.3mf", package(model(an_object(1, MESH)), relations=None))
+put("truncated.3mf", PLAIN[:len(PLAIN) // 2])
+put("damaged.3mf", PLAIN.replace(b"3D/m.model", b"3D/m.modeL", 1)[:-40] + PLAIN[-40:-30] + b"\xff" + PLAIN[-29:])
+put("empty.3mf", b"")

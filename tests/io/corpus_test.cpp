@@ -43,7 +43,7 @@ TEST(corpus, every_file_has_one_row) {
   for (const auto& entry : std::filesystem::directory_iterator(testing::corpus_dir())) {
     const std::string ending = entry.path().extension();
     if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl" || ending == ".usda" ||
-        ending == ".glb") {
+        ending == ".glb" || ending == ".gltf" || ending == ".3mf") {
       present.insert(entry.path().filename());
     }
   }
@@ -108,6 +108,9 @@ TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
   // Vertices in the order of the facets, as in STL.
   EXPECT_EQ(read("tetrahedron.glb").points, read("tetrahedron_binary.stl").points);
   EXPECT_EQ(read("tetrahedron.glb").face_vertices, read("tetrahedron_binary.stl").face_vertices);
+  for (const char* file : {"tetrahedron.gltf", "buffer_beside.gltf"})
+    expect_same_arrays(read("tetrahedron.glb"), read(file));
+  for (const char* file : {"tetrahedron.3mf", "stored.3mf"}) expect_same_arrays(read("tetrahedron.off"), read(file));
   const ControlMesh facets = read("tetrahedron_binary.stl");
   EXPECT_EQ(facets.vertex_count(), 4u);
   for (const char* file : {"tetrahedron_ascii", "binary_solid", "binary_title_ply", "two_solids",

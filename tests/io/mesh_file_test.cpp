@@ -1,5 +1,7 @@
 #include <snug/mesh.h>
 
+#include <filesystem>
+
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include <snug/io/formats.h>
 #include <testing/written_forms.h>
 
+#include <support/binary.h>
 #include <support/read_file.h>
 #include <testing/counts.h>
 #include <testing/files.h>
@@ -92,13 +95,51 @@ TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
   put(folder.file("ply"), format_ply(creased_triangle()));
   put(folder.file("usda"), format_usda(creased_triangle(), "usda"));
   put(folder.file("glb"), format_glb(creased_triangle(), "glb"));
+  put(folder.file("gltf"), format_gltf(creased_triangle(), "gltf"));
+  put(folder.file("3mf"), format_3mf(creased_triangle(), "3mf"));
   put(folder.file("bad"), "OFF\n3 1 0\n0 0 0\n");
-  for (const char* name : {"obj", "off", "ply", "usda", "glb"}) {
+  for (const char* name : {"obj", "off", "ply", "usda", "glb", "gltf", "3mf"}) {
     const InputFrom input(folder.file(name));
     expect_same_arrays(creased_triangle(), read_mesh("-"));
   }
   const InputFrom input(folder.file("bad"));
   EXPECT_EQ(message("-").substr(0, 16), "standard input:3");
+}
+
+TEST(mesh_file, files_beside_one_are_read_and_the_caller_may_have_them) {
+  const TemporaryFolder folder;
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":)"
+      R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":)"
+      R"([{"byteLength":36,"uri":"data/a.bin"}]})";
+  put(folder.file("a.gltf"), gltf);
+  std::filesystem::create_directory(folder.file("data"));
+  std::string buffer;
+  for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) append_binary(buffer, x);
+  put(folder.file("data/a.bin"), buffer);
+  EXPECT_EQ(read_mesh(folder.file("a.gltf")).points[1], (Point3{1, 0, 0}));
+  std::filesystem::remove(folder.file("data/a.bin"));
+  EXPECT_NE(message(folder.file("a.gltf")).find("buffer 0: "), std::string::npos);
+  std::string asked;
+  ReadOptions options;
+  options.other_file = [&](const std::string& path) {
+    asked = path;
+    return buffer;
+  };
+  EXPECT_EQ(read_mesh(folder.file("a.gltf"), options).vertex_count(), 3u);
+  EXPECT_EQ(asked, "data/a.bin");
+}
+
+TEST(mesh_file, units_are_kept_where_the_format_has_them) {
+  const TemporaryFolder folder;
+  ControlMesh mesh = creased_triangle();
+  mesh.metres_per_unit = 0.0254;
+  write_mesh(mesh, folder.file("a.3mf"));
+  EXPECT_EQ(read_mesh(folder.file("a.3mf")).metres_per_unit, 0.0254);
+  write_mesh(mesh, folder.file("a.glb"));
+  EXPECT_EQ(read_mesh(folder.file("a.glb")).metres_per_unit, 1.0);
+  write_mesh(mesh, folder.file("a.ply"));
+  EXPECT_EQ(read_mesh(folder.file("a.ply")).metres_per_unit, std::nullopt);
 }
 
 TEST(mesh_file, tells_the_formats_of_files_without_ending_apart) {
@@ -179,16 +220,18 @@ TEST(mesh_file, bad_names_are_clear_errors) {
   EXPECT_EQ(message(""), "the name of the file to read is empty");
   EXPECT_EQ(message(folder.file("none.obj")),
             folder.file("none.obj") + ": cannot be read: No such file or directory");
-  for (const char* name : {"a.xyz", "a.gltf"}) {
+  for (const char* name : {"a.xyz", "a.dae"}) {
     EXPECT_EQ(message(folder.file(name)),
-              folder.file(name) + ": meshes are read from .obj, .off, .ply, .stl, .usda and .glb files only");
+              folder.file(name) +
+                  ": meshes are read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf files only");
   }
   std::filesystem::create_directory(folder.file("folder.obj"));
   EXPECT_EQ(message(folder.file("folder.obj")),
             folder.file("folder.obj") + ": is a directory: name a file in it");
   for (const char* name : {"a.xyz", "a"}) {
     const std::string expected =
-        folder.file(name) + ": meshes are written to .obj, .off, .ply, .stl, .glb and .usda files only";
+        folder.file(name) +
+        ": meshes are written to .obj, .off, .ply, .stl, .glb, .gltf, .3mf and .usda files only";
     EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder.file(name)); }), expected);
     EXPECT_EQ(unreadable([&] { static_cast<void>(format_of(folder.file(name))); }), expected);
   }

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <snug/io/other_file.h>
+#include <snug/io/placed_meshes.h>
 #include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
 
@@ -101,6 +103,9 @@ namespace snug {
 /// Source:    OpenUSD, UsdGeomMesh, UsdGeomXformable and UsdGeomImageable.
 [[nodiscard]] ControlMesh parse_usda(std::string_view bytes, const std::string& name,
                                      const Notes& notes = {});
+/// The same as meshes of their own, each with its own scheme and rules. Mirrored ones are not reversed yet.
+[[nodiscard]] PlacedMeshes read_usda(std::string_view bytes, const std::string& name,
+                                     const Notes& notes = {});
 
 /// The mesh as a USD text with one prim, which parse_usda reads back bit by bit and with its tags. `points`
 /// have the type that USD asks for, point3f, but all digits: other programs round them to floats.
@@ -110,25 +115,51 @@ namespace snug {
 [[nodiscard]] std::string format_usda(const ControlMesh& mesh, const std::string& name,
                                       const Notes& notes = {});
 
+/// The meshes of a 3MF package, and where its build items and components place them.
+///
+/// Guarantee: coordinates are the doubles nearest to the decimals; vertices and triangles keep their order. The tag of the
+///            scheme is flat, the unit that of the model. Whatever the package promises: it unpacks to at most 100 times its
+///            size and a mebibyte, makes at most 2^18 parts, and 100 times its size in vertices and corners.
+/// Notes:     one line for objects of the types support and other, and one for each element of an extension that would
+///            change the surface.
+/// Errors:    also a package without a model or items, extensions that are needed other than production's, materials' and
+///            triangle sets', other units in other files of the package, document types.
+/// Source:    3MF core specification 1.3, production extension 1.1.
+[[nodiscard]] PlacedMeshes read_3mf(std::string_view bytes, const std::string& name, const Notes& notes = {});
+/// The same as one mesh, see joined().
+[[nodiscard]] ControlMesh parse_3mf(std::string_view bytes, const std::string& name, const Notes& notes = {});
+
+/// The mesh as a 3MF package with one object, all digits of its coordinates and its unit, without its tags. Faces become
+/// fans of triangles.
+///
+/// Notes:     one line each if faces were split, if triangles that name a vertex twice were left out, and if the unit is not
+///            known: millimetres are written.
+/// Errors:    InputError (refused) for a unit that 3MF does not have, a face of one or two corners, more than 4 GiB.
+[[nodiscard]] std::string format_3mf(const ControlMesh& mesh, const std::string& name,
+                                     const Notes& notes = {});
+
 /// Bytes before the first chunk of a binary glTF file, and of a chunk before its content.
 inline constexpr std::size_t glb_header_size = 12, glb_chunk_head_size = 8;
 
-/// Whether the bytes begin like a binary glTF file.
-[[nodiscard]] bool begins_like_glb(std::string_view bytes);
+/// Whether the bytes begin like a glTF file: the binary form, or JSON.
+[[nodiscard]] bool begins_like_gltf(std::string_view bytes);
 
-/// The control mesh that the triangles of a binary glTF 2.0 file are.
+/// The meshes of the triangles of a glTF 2.0 file, binary or text, and the nodes that place them.
 ///
-/// Guarantee: coordinates are exactly the floats, and moved by nodes at most as far off as a note says. The
-///            file splits vertices by normals and the like: within a node, corners become one vertex where
-///            they are equal. Triangles with two corners in one place are left out, the others keep their
-///            order; mirroring nodes reverse them. Instances and shared accessors make at most 100 times the
-///            file. The tag of the scheme is flat: the triangles are meant.
-/// Notes:     one line each for moved points, primitives without triangles, triangles that are left out, and
-///            skins or morph targets, which are not applied.
-/// Errors:    also buffers outside of the file, extensions that are needed and may concern the geometry, such
-///            as Draco's and meshopt's, nodes that do not form trees.
+/// Guarantee: coordinates are exactly the floats. The file splits vertices by normals and the like: within a mesh, corners
+///            become one vertex where they are equal. Triangles with two corners in one place are left out, the others keep
+///            their order. Instances and shared accessors make at most 100 times the files. The tag of the scheme is flat:
+///            the triangles are meant. The unit is a metre.
+/// Notes:     one line each for primitives without triangles, triangles that are left out, and skins or morph targets,
+///            which are not applied.
+/// Errors:    also buffers of other files that `files` does not have or that are not in the file's folder, extensions that are
+///            needed and may concern the geometry, such as Draco's and meshopt's, nodes that do not form trees.
 /// Source:    glTF 2.0 specification, sections 3.5 to 3.7 and 4.4.
-[[nodiscard]] ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Notes& notes = {});
+[[nodiscard]] PlacedMeshes read_gltf(std::string_view bytes, const std::string& name,
+                                     const OtherFiles& files = {}, const Notes& notes = {});
+/// The same as one mesh, see joined().
+[[nodiscard]] ControlMesh parse_gltf(std::string_view bytes, const std::string& name,
+                                     const OtherFiles& files = {}, const Notes& notes = {});
 
 /// The mesh as a binary glTF 2.0 file, for viewers: one node, one mesh, one list of triangles; positions as
 /// floats, indices of 32 bits, normals of the vertices if there are any, no materials. Its tags are left out.
@@ -143,5 +174,8 @@ inline constexpr std::size_t glb_header_size = 12, glb_chunk_head_size = 8;
 /// Source:    glTF 2.0 specification, sections 3.6, 3.7 and 4.4.
 [[nodiscard]] std::string format_glb(const ControlMesh& mesh, const std::string& name,
                                      const Notes& notes = {}, std::span<const Vector3> normals = {});
+/// The same as glTF text, with its buffer as a data URI: one file, a third longer.
+[[nodiscard]] std::string format_gltf(const ControlMesh& mesh, const std::string& name,
+                                      const Notes& notes = {}, std::span<const Vector3> normals = {});
 
 }  // namespace snug

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include <snug/io/formats.h>
+#include <snug/io/zip.h>
 #include <snug/mesh/loose_creases.h>
 #include <snug/scheme/scheme.h>
 #include <support/atomic_file.h>
@@ -30,8 +32,8 @@ std::string format_among(std::initializer_list<std::string_view> known, const st
 /// The ending that names the format to write.
 std::string format_to_write(const std::string& path) {
   if (path == "-") return ".obj";
-  return format_among({".obj", ".off", ".ply", ".stl", ".glb", ".usda"}, path,
-                      "written to .obj, .off, .ply, .stl, .glb and .usda");
+  return format_among({".obj", ".off", ".ply", ".stl", ".glb", ".gltf", ".3mf", ".usda"}, path,
+                      "written to .obj, .off, .ply, .stl, .glb, .gltf, .3mf and .usda");
 }
 
 bool holds_tags(const std::string& ending) { return ending == ".obj" || ending == ".usda"; }
@@ -47,14 +49,15 @@ void note_dropped_tags(const ControlMesh& mesh, const std::string& path, bool fa
     notes(path +
           ": this format does not say that its triangles are meant as they are, and who reads it may smooth "
           "them; "
-          "OBJ, STL, glTF and USD say so");
+          "OBJ, STL, glTF, 3MF and USD say so");
   }
 }
 
 /// The format of a file whose name does not show it.
 std::string sniffed_format(std::string_view bytes) {
   if (begins_like_ply(bytes)) return ".ply";
-  if (begins_like_glb(bytes)) return ".glb";
+  if (begins_like_gltf(bytes)) return ".glb";
+  if (begins_like_zip(bytes) && bytes.find("_rels/.rels") != std::string_view::npos) return ".3mf";
   if (begins_like_usda(bytes)) return ".usda";
   return begins_like_off(bytes) ? ".off" : ".obj";
 }
@@ -66,23 +69,35 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
   if (ending == ".stl") return format_stl(mesh, path, notes);
   if (ending == ".usda") return format_usda(mesh, path, notes);
   if (ending == ".glb") return format_glb(mesh, path, notes, normals);
+  if (ending == ".gltf") return format_gltf(mesh, path, notes, normals);
+  if (ending == ".3mf") return format_3mf(mesh, path, notes);
   return format_obj(mesh);
 }
 
 /// The ending that names the format to read; empty for none.
 std::string format_to_read(const std::string& path) {
-  return format_among({"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb"}, path,
-                      "read from .obj, .off, .ply, .stl, .usda and .glb");
+  return format_among({"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb", ".gltf", ".3mf"},
+                      path, "read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf");
 }
 
-ControlMesh parsed(std::string_view bytes, std::string ending, const std::string& name, const Notes& notes) {
-  if (ending.empty()) ending = sniffed_format(bytes);
+ControlMesh parsed(std::string_view bytes, const std::string& ending, const std::string& name,
+                   const ReadOptions& options) {
   if (ending == ".off") return parse_off(bytes, name);
   if (ending == ".ply") return parse_ply(bytes, name);
   if (ending == ".stl") return parse_stl(bytes, name);
-  if (ending == ".glb") return parse_glb(bytes, name, notes);
-  if (ending.starts_with(".usd")) return parse_usda(bytes, name, notes);  // refuses binary ones
-  return parse_obj(bytes, name, notes);
+  if (ending == ".glb" || ending == ".gltf") return parse_gltf(bytes, name, options.other_file, options.notes);
+  if (ending == ".3mf") return parse_3mf(bytes, name, options.notes);
+  if (ending.starts_with(".usd")) return parse_usda(bytes, name, options.notes);  // refuses binary ones
+  return parse_obj(bytes, name, options.notes);
+}
+
+/// Formats that hold several meshes; nothing for others.
+std::optional<PlacedMeshes> parsed_parts(std::string_view bytes, const std::string& ending,
+                                         const std::string& name, const ReadOptions& options) {
+  if (ending == ".glb" || ending == ".gltf") return read_gltf(bytes, name, options.other_file, options.notes);
+  if (ending == ".3mf") return read_3mf(bytes, name, options.notes);
+  if (ending.starts_with(".usd")) return read_usda(bytes, name, options.notes);
+  return {};
 }
 
 /// Longest side of the box of the vertices that faces or polylines use.
@@ -122,9 +137,15 @@ void note_loose_creases(const ControlMesh& mesh, const std::string& name, const 
 
 }  // namespace
 
-ControlMesh parse_mesh(std::string_view bytes, const std::string& path, const ReadOptions& options) {
-  const std::string name = input_name(path);
-  ControlMesh mesh = parsed(bytes, format_to_read(path), name, options.notes);
+namespace {
+
+std::string format_to_read(const std::string& path, std::string_view bytes) {
+  const std::string ending = format_to_read(path);
+  return ending.empty() ? sniffed_format(bytes) : ending;
+}
+
+/// A mesh that was read, as the options want it.
+void finish(ControlMesh& mesh, const std::string& name, const ReadOptions& options) {
   if (options.weld) {
     try {
       const WeldReport welded = weld(mesh, options.weld(size_of(mesh)));
@@ -134,19 +155,56 @@ ControlMesh parse_mesh(std::string_view bytes, const std::string& path, const Re
     }
   }
   if (options.notes) note_loose_creases(mesh, name, options.notes);
+}
+
+/// With files beside that of the path, unless the caller has them.
+ReadOptions beside(const std::string& path, ReadOptions options, const Run& run) {
+  if (!options.other_file && path != "-") {
+    options.other_file = [folder = std::filesystem::path(path).parent_path(),
+                          monitor = monitor_of(run)](const std::string& other) {
+      return read_file((folder / other).string(), monitor);
+    };
+  }
+  return options;
+}
+
+}  // namespace
+
+ControlMesh parse_mesh(std::string_view bytes, const std::string& path, const ReadOptions& options) {
+  const std::string name = input_name(path);
+  ControlMesh mesh = parsed(bytes, format_to_read(path, bytes), name, options);
+  finish(mesh, name, options);
   return mesh;
+}
+
+MeshAssembly parse_assembly(std::string_view bytes, const std::string& path, const ReadOptions& options) {
+  const std::string name = input_name(path), ending = format_to_read(path, bytes);
+  std::optional<PlacedMeshes> parts = parsed_parts(bytes, ending, name, options);
+  MeshAssembly result;
+  if (parts) {
+    result = assembled(std::move(*parts), name, options.notes);
+  } else {
+    result.meshes.push_back(parsed(bytes, ending, name, options));
+    result.parts.push_back({std::filesystem::path(name).stem().string(), 0, {}});
+  }
+  for (ControlMesh& mesh : result.meshes) finish(mesh, name, options);
+  return result;
 }
 
 ControlMesh read_mesh(const std::string& path, const ReadOptions& options, const Run& run) {
   static_cast<void>(format_to_read(path));  // before the file is opened
-  return parse_mesh(read_file(path, monitor_of(run)), path, options);
+  return parse_mesh(read_file(path, monitor_of(run)), path, beside(path, options, run));
+}
+
+MeshAssembly read_assembly(const std::string& path, const ReadOptions& options, const Run& run) {
+  static_cast<void>(format_to_read(path));
+  return parse_assembly(read_file(path, monitor_of(run)), path, beside(path, options, run));
 }
 
 MeshFormat format_of(const std::string& path) {
   const std::string ending = format_to_write(path);
-  const bool triangles = ending == ".stl" || ending == ".glb";
-  return {
-      .polygons = !triangles, .floats = triangles, .normals = ending == ".glb", .scheme = ending == ".usda"};
+  const bool gltf = ending == ".glb" || ending == ".gltf", floats = gltf || ending == ".stl";
+  return {.polygons = !floats && ending != ".3mf", .floats = floats, .normals = gltf, .scheme = ending == ".usda"};
 }
 
 std::string format_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options,

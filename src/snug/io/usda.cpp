@@ -65,27 +65,23 @@ bool is_other_shape(std::string_view type) {
   return std::ranges::find(types, type) != types.end();
 }
 
-/// Makes one control mesh of the prims that count.
+/// Makes one control mesh of the prims that count, or one of each.
 class Assembler {
  public:
   Assembler(const UsdaStage& stage, const std::string& name, const Notes& notes)
       : stage_(stage), name_(name), notes_(notes), inherited_(stage.prims.size()) {}
 
   ControlMesh assemble() {
-    for (std::size_t p = 0; p < stage_.prims.size(); ++p) {
-      inherit(p);
-      if (inherited_[p].left_out() == LeftOut::none) {
-        refuse_content_from_elsewhere(p);
-        if (stage_.prims[p].mesh) add(p);
-        if (is_other_shape(stage_.prims[p].type)) others_.push_back(p);
-      } else if (stage_.prims[p].mesh) {
-        left_out_[inherited_[p].left_out()].push_back(p);
-      }
-    }
-    write_notes();
-    if (used_.empty()) fail_in_file(name_, "the file has no mesh that is defined, visible and for rendering");
+    visit_prims();
     set_rules();
+    mesh_.metres_per_unit = stage_.metres_per_unit;
     return std::move(mesh_);
+  }
+
+  PlacedMeshes assemble_apart() {
+    apart_.emplace();
+    visit_prims();
+    return std::move(*apart_);
   }
 
  private:
@@ -101,6 +97,21 @@ class Assembler {
     return path;
   }
   [[nodiscard]] std::string quoted_path(std::size_t p) const { return in_quotes(path_of(p)); }
+
+  void visit_prims() {
+    for (std::size_t p = 0; p < stage_.prims.size(); ++p) {
+      inherit(p);
+      if (inherited_[p].left_out() == LeftOut::none) {
+        refuse_content_from_elsewhere(p);
+        if (stage_.prims[p].mesh) apart_ ? add_apart(p) : add(p);
+        if (is_other_shape(stage_.prims[p].type)) others_.push_back(p);
+      } else if (stage_.prims[p].mesh) {
+        left_out_[inherited_[p].left_out()].push_back(p);
+      }
+    }
+    write_notes();
+    if (used_.empty()) fail_in_file(name_, "the file has no mesh that is defined, visible and for rendering");
+  }
 
   // --- what prims inherit
 
@@ -201,10 +212,22 @@ class Assembler {
     used_.push_back(p);
   }
 
+  void add_apart(std::size_t p) {
+    mesh_ = {};
+    rules_of_.reset();
+    add(p);
+    if (mesh_.face_count() == 0) return;
+    set_rules();
+    mesh_.metres_per_unit = stage_.metres_per_unit;
+    apart_->parts.push_back({std::string(stage_.prims[p].name), quoted_path(p), apart_->meshes.size(),
+                             maps_[inherited_[p].map]});
+    apart_->meshes.push_back(std::move(mesh_));
+  }
+
   void add_points(std::size_t p) {
     const std::vector<Point3>& points = stage_.prims[p].mesh->points;
     const AffineEnclosure& map = maps_[inherited_[p].map];
-    if (map == AffineEnclosure()) {
+    if (apart_ || map == AffineEnclosure()) {
       mesh_.points.insert(mesh_.points.end(), points.begin(), points.end());
       return;
     }
@@ -233,7 +256,7 @@ class Assembler {
       fail_at(own.line(UsdaAttribute::orientation),
               "orientation: " + in_quotes(own.orientation) + " is not one of rightHanded and leftHanded");
     }
-    const bool mirrored = maps_[inherited_[p].map].handedness() < 0;
+    const bool mirrored = !apart_ && maps_[inherited_[p].map].handedness() < 0;
     if (left_handed != mirrored) ++reversed_;
     std::size_t at = 0;
     std::vector<VertexId> corners;
@@ -347,7 +370,8 @@ class Assembler {
     const auto triangles = rule(own, UsdaAttribute::triangle_rule, own.triangle_rule, triangle_names);
     if (scheme == Scheme::flat) boundary.reset();  // polygons have no such rule
     MeshTags& tags = mesh_.tags;
-    if (used_.empty()) {
+    const bool is_first = !rules_of_;
+    if (is_first) {
       tags.scheme = scheme;
       tags.smooth_triangles = triangles.value_or(tags.smooth_triangles);
     }
@@ -358,15 +382,16 @@ class Assembler {
     const auto refuse = [&](UsdaAttribute attribute) {
       fail_at(stage_.prims[p].line, std::string(usda_attribute_names[static_cast<std::size_t>(attribute)]) +
                                         " of " + quoted_path(p) + " is not that of " +
-                                        quoted_path(used_.front()) + ": write them to different files");
+                                        quoted_path(*rules_of_) + ": write them to different files");
     };
     if (*tags.scheme != scheme && !(is_local(*tags.scheme) && is_local(scheme)))
       refuse(UsdaAttribute::scheme);
-    if (!used_.empty() && effective(tags.boundary) != effective(boundary)) refuse(UsdaAttribute::boundary);
+    if (!is_first && effective(tags.boundary) != effective(boundary)) refuse(UsdaAttribute::boundary);
     if (tags.smooth_triangles != triangles.value_or(SmoothTriangles::catmark))
       refuse(UsdaAttribute::triangle_rule);
     if (scheme == Scheme::bilinear) tags.scheme = scheme;
     if (boundary) tags.boundary = boundary;
+    if (is_first) rules_of_ = p;
   }
 
   /// Polygons as they are: triangles are flat, others bilinear.
@@ -428,6 +453,8 @@ class Assembler {
   std::vector<Inherited> inherited_;
   std::vector<AffineEnclosure> maps_{AffineEnclosure()};
   ControlMesh mesh_;
+  std::optional<PlacedMeshes> apart_;
+  std::optional<std::size_t> rules_of_;  // the prim that the rules of mesh_ come from
   std::vector<std::size_t> used_, empty_, others_;
   std::map<LeftOut, std::vector<std::size_t>> left_out_;
   std::size_t moved_ = 0, reversed_ = 0;
@@ -510,14 +537,27 @@ bool begins_like_usda(std::string_view text) {
   return text.starts_with("#usda ") || text.starts_with("#sdf ");
 }
 
-ControlMesh parse_usda(std::string_view bytes, const std::string& name, const Notes& notes) {
+namespace {
+
+UsdaStage stage_of(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("PK"))
     fail_in_file(name, "this is a packed USD file: convert it to text, usdcat -o mesh.usda");
   const std::string_view text = plain_text(bytes, name);
   if (!begins_like_usda(text))
     fail_in_file(name, "this is not a USD text: it does not begin with '#usda 1.0'");
-  const UsdaStage stage = read_usda_prims(text, name);
+  return read_usda_prims(text, name);
+}
+
+}  // namespace
+
+ControlMesh parse_usda(std::string_view bytes, const std::string& name, const Notes& notes) {
+  const UsdaStage stage = stage_of(bytes, name);
   return Assembler(stage, name, notes).assemble();
+}
+
+PlacedMeshes read_usda(std::string_view bytes, const std::string& name, const Notes& notes) {
+  const UsdaStage stage = stage_of(bytes, name);
+  return Assembler(stage, name, notes).assemble_apart();
 }
 
 std::string format_usda(const ControlMesh& mesh, const std::string& name, const Notes& notes) {

@@ -9,9 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include <snug/io/other_file.h>
+#include <snug/io/placed_meshes.h>
 #include <snug/io/transform.h>
 #include <snug/mesh/weld.h>
 #include <support/binary.h>
+#include <support/error.h>
 #include <support/number.h>
 #include <support/read_file.h>
 #include <support/text_cursor.h>
@@ -102,19 +105,26 @@ bool has_no_geometry(std::string_view extension) {
   return false;
 }
 
-class GlbReader {
+class GltfReader {
  public:
-  GlbReader(const Json& json, std::string_view binary, std::size_t file_size, const std::string& name,
-            const Notes& notes)
-      : json_(json), binary_(binary), name_(name), notes_(notes), max_work_(100 * file_size) {}
+  /// `binary`: the chunk of a binary file, if there is one.
+  GltfReader(const Json& json, std::optional<std::string_view> binary, std::size_t file_size,
+             const std::string& name, const OtherFiles& files, const Notes& notes)
+      : json_(json),
+        binary_(binary),
+        name_(name),
+        files_(files),
+        notes_(notes),
+        max_work_(100 * file_size),
+        buffers_(list(json, "buffers").size()) {}
 
-  ControlMesh read() {
+  PlacedMeshes read() {
     refuse_other_versions();
     visit_nodes();
     write_notes();
-    if (mesh_.face_count() == 0) fail("the file has no triangles in its scene");
-    mesh_.tags.scheme = Scheme::flat;
-    return std::move(mesh_);
+    if (placed_.parts.empty()) fail("the file has no triangles in its scene");
+    placed_.max_elements = std::min(placed_.max_elements, max_work_);
+    return std::move(placed_);
   }
 
  private:
@@ -174,27 +184,60 @@ class GlbReader {
     spent_ += work;
   }
 
+  // --- buffers
+
+  /// A buffer, read when it is first asked for.
+  std::string_view bytes_of(std::uint64_t number) {
+    const Json& own = item("buffers", number);
+    const std::uint64_t size = required(own, "byteLength", "a buffer");
+    const std::string what = "glTF: buffer " + std::to_string(number);
+    const Json* const uri = find(own, "uri");
+    std::string_view bytes;
+    if (!uri && number == 0 && binary_) {
+      bytes = *binary_;
+    } else if (!uri) {
+      fail(what + " has no 'uri', and no bytes in the file");
+    } else {
+      std::optional<std::string>& kept = buffers_[number];
+      if (!kept) kept = read_buffer(text(*uri), what);
+      bytes = *kept;
+    }
+    return bytes.substr(0, static_cast<std::size_t>(std::min<std::uint64_t>(size, bytes.size())));
+  }
+
+  std::string read_buffer(std::string_view uri, const std::string& what) {
+    if (uri.starts_with("data:")) return data_of_uri(uri, name_, what);
+    const std::string path = path_inside(uri, name_, what);
+    if (!files_) {
+      fail(what + " is in the file " + in_quotes(path) +
+           ", which is not at hand: give the path of the file, or write one .glb file with all in it");
+    }
+    std::string bytes;
+    try {
+      bytes = files_(path);
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), name_ + ": " + what + ": " + error.what());
+    }
+    max_work_ += 100 * bytes.size();
+    return bytes;
+  }
+
   // --- accessors
 
   /// `size` bytes at an offset of a buffer view; its stride too.
-  std::pair<std::string_view, std::size_t> view(std::uint64_t number) const {
+  std::pair<std::string_view, std::size_t> view(std::uint64_t number) {
     const Json& view = item("bufferViews", number);
     const std::uint64_t buffer = required(view, "buffer", "a buffer view"),
                         begin = integer(view, "byteOffset").value_or(0),
                         size = required(view, "byteLength", "a buffer view"),
                         stride = integer(view, "byteStride").value_or(0);
-    const Json& own = item("buffers", buffer);
-    if (buffer != 0 || find(own, "uri")) {
-      fail("glTF: buffer " + std::to_string(buffer) +
-           " is not in the file: write one .glb file with all in it");
-    }
-    const std::uint64_t whole =
-        std::min<std::uint64_t>(binary_.size(), required(own, "byteLength", "a buffer"));
+    const std::string_view bytes = bytes_of(buffer);
+    const std::size_t whole = bytes.size();
     if (begin > whole || size > whole - begin) {
       fail("glTF: buffer view " + std::to_string(number) + " ends beyond its buffer: the file is truncated");
     }
     if (stride > 252) fail("glTF: byteStride " + std::to_string(stride) + " is more than 252");
-    return {binary_.substr(begin, size), stride};
+    return {bytes.substr(begin, size), stride};
   }
 
   [[nodiscard]] const Component& component_of(const Json& of) const {
@@ -205,8 +248,7 @@ class GlbReader {
   }
 
   /// `count` elements of a view at an offset; which must be there.
-  const char* elements_in(const Json& of, std::size_t count, std::size_t element_size,
-                          std::size_t* stride) const {
+  const char* elements_in(const Json& of, std::size_t count, std::size_t element_size, std::size_t* stride) {
     const auto [bytes, own_stride] = view(required(of, "bufferView", "an accessor"));
     const std::uint64_t begin = integer(of, "byteOffset").value_or(0);
     const std::size_t step = stride && own_stride ? own_stride : element_size;
@@ -229,6 +271,7 @@ class GlbReader {
     const Json* const normalized = find(own, "normalized");
     elements.normalized = normalized && *normalized == true && elements.component->code != float_code;
     const std::uint64_t count = required(own, "count", "an accessor");
+    if (const auto number_of_view = integer(own, "bufferView")) static_cast<void>(view(*number_of_view));
     if (count > max_work_) fail(what + " counts more than the file can hold");
     elements.count = count;
     if (find(own, "bufferView")) {
@@ -304,7 +347,12 @@ class GlbReader {
       const AffineEnclosure map = next.above.after(own_map(node, next.node));
       if (!map.is_finite())
         fail("glTF: node " + std::to_string(next.node) + " is beyond the range of doubles");
-      if (const auto mesh = integer(node, "mesh")) add_mesh(item("meshes", *mesh), map, next.node);
+      if (const Json* const extensions = find(node, "extensions");
+          extensions && find(*extensions, "EXT_mesh_gpu_instancing")) {
+        fail("glTF: node " + std::to_string(next.node) +
+             " has instances by EXT_mesh_gpu_instancing: write them as nodes");
+      }
+      if (const auto mesh = integer(node, "mesh")) add_part(*mesh, map, next.node);
       deforms_ = deforms_ || find(node, "skin") || find(node, "weights");
       std::vector<std::uint64_t> children;
       for (const Json& child : list(node, "children"))
@@ -349,38 +397,31 @@ class GlbReader {
 
   // --- triangles
 
-  /// Each node's mesh is welded by itself: other parts may touch it.
-  void add_mesh(const Json& mesh, const AffineEnclosure& map, std::uint64_t node) {
-    std::vector<Point3> corners;
-    for (const Json& primitive : list(mesh, "primitives")) add_primitive(primitive, node, corners);
-    if (corners.empty()) return;
-    ControlMesh welded = mesh_of_triangles(corners);
-    move(welded, map, node);
-    const bool mirrored = map.handedness() < 0;
-    const std::size_t first = mesh_.vertex_count();
-    mesh_.points.insert(mesh_.points.end(), welded.points.begin(), welded.points.end());
-    for (std::size_t f = 0; f < welded.face_count(); ++f) {
-      const auto own = welded.face(FaceId(f));
-      std::array<VertexId, 3> face{VertexId(first + own[0].index()), VertexId(first + own[1].index()),
-                                   VertexId(first + own[2].index())};
-      if (mirrored) std::swap(face[1], face[2]);
-      mesh_.add_face(face);
-    }
-  }
-
-  void move(ControlMesh& mesh, const AffineEnclosure& map, std::uint64_t node) {
-    if (map == AffineEnclosure()) return;
-    moved_ = true;
-    for (Point3& point : mesh.points) {
-      const std::array<Interval, 3> image = map(point);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        point[axis] = middle(image[axis]);
-        if (!std::isfinite(point[axis]) || !std::isfinite(radius(image[axis]))) {
-          fail("glTF: node " + std::to_string(node) + " moves a vertex beyond the range of doubles");
-        }
-        farthest_ = std::fmax(farthest_, radius(image[axis]));
+  /// Each mesh is welded by itself: other parts may touch it.
+  void add_part(std::uint64_t number, const AffineEnclosure& map, std::uint64_t node) {
+    const Json& mesh = item("meshes", number);
+    auto known = meshes_.find(number);
+    if (known == meshes_.end()) {
+      std::vector<Point3> corners;
+      for (const Json& primitive : list(mesh, "primitives")) add_primitive(primitive, node, corners);
+      std::optional<std::size_t> place;
+      if (!corners.empty()) {
+        place = placed_.meshes.size();
+        placed_.meshes.push_back(mesh_of_triangles(corners));
+        placed_.meshes.back().tags.scheme = Scheme::flat;
+        placed_.meshes.back().metres_per_unit = 1;
       }
+      known = meshes_.emplace(number, place).first;
     }
+    if (!known->second) return;
+    spend(placed_.meshes[*known->second].face_vertices.size());
+    const auto name_of = [](const Json& of) {
+      const Json* const name = find(of, "name");
+      return name ? std::string(text(*name)) : std::string();
+    };
+    std::string name = name_of(item("nodes", node));
+    if (name.empty()) name = name_of(mesh);
+    placed_.parts.push_back({std::move(name), "glTF: node " + std::to_string(node), *known->second, map});
   }
 
   void add_primitive(const Json& primitive, std::uint64_t node, std::vector<Point3>& corners) {
@@ -421,7 +462,7 @@ class GlbReader {
       fail("glTF: " + std::to_string(count) + " corners are not a multiple of 3");
     const std::size_t triangles = mode == 4 ? count / 3 : count - std::min<std::size_t>(count, 2);
     spend(3 * triangles);
-    if (mesh_.face_vertices.size() + corners.size() + 3 * triangles > max_elements) {
+    if (corners.size() + 3 * triangles > max_elements) {
       fail("more than " + std::to_string(max_elements) + " corners: split the mesh");
     }
     for (std::size_t t = 0; t < triangles; ++t) {
@@ -440,14 +481,6 @@ class GlbReader {
   void write_notes() const {
     if (!notes_) return;
     const auto note = [&](const std::string& text) { notes_(name_ + ": " + text); };
-    if (moved_) {
-      std::string text = "points are moved by the transforms of their nodes";
-      if (farthest_ > 0) {
-        text += "; rounding moves a coordinate by at most ";
-        append_real(text, farthest_);
-      }
-      note(text);
-    }
     if (no_triangles_ > 0)
       note(std::to_string(no_triangles_) + " primitives are left out: they contain no triangles");
     if (degenerate_ > 0) {
@@ -459,14 +492,17 @@ class GlbReader {
   }
 
   const Json& json_;
-  std::string_view binary_;
+  std::optional<std::string_view> binary_;
   const std::string& name_;
+  const OtherFiles& files_;
   const Notes& notes_;
   std::size_t max_work_, spent_ = 0;
-  ControlMesh mesh_;
+  std::vector<std::optional<std::string>> buffers_;  // of those in other files or data URIs
+  PlacedMeshes placed_;
+  std::map<std::uint64_t, std::optional<std::size_t>>
+      meshes_;  // by their numbers in the file; empty without triangles
   std::size_t no_triangles_ = 0, degenerate_ = 0;
-  bool moved_ = false, deforms_ = false;
-  double farthest_ = 0;
+  bool deforms_ = false;
 };
 
 /// The chunk at an offset, which moves behind it.
@@ -506,13 +542,23 @@ Json parse_json(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-bool begins_like_glb(std::string_view bytes) { return bytes.starts_with("glTF"); }
+bool begins_like_gltf(std::string_view bytes) {
+  if (bytes.starts_with("glTF")) return true;
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && bytes[first] == '{';
+}
 
-ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Notes& notes) {
+PlacedMeshes read_gltf(std::string_view bytes, const std::string& name, const OtherFiles& files,
+                       const Notes& notes) {
   using namespace std::string_view_literals;
-  if (!begins_like_glb(bytes)) {
+  if (!begins_like_gltf(bytes)) {
     refuse_other_formats(bytes, name);
-    fail_in_file(name, "this is not a binary glTF file: it does not begin with 'glTF'");
+    fail_in_file(name, "this is not a glTF file: it begins neither with 'glTF' nor with '{'");
+  }
+  if (!bytes.starts_with("glTF")) {
+    const Json json = parse_json(plain_text(bytes, name), name);
+    return GltfReader(json, {}, bytes.size(), name, files, notes).read();
   }
   if (bytes.size() < glb_header_size)
     fail_in_file(name, "glTF: the file ends within its header: it is truncated");
@@ -528,7 +574,12 @@ ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Not
   const Json json = parse_json(take_chunk(bytes, at, "JSON"sv, name), name);
   const std::string_view binary =
       at < bytes.size() ? take_chunk(bytes, at, "BIN\0"sv, name) : std::string_view();
-  return GlbReader(json, binary, bytes.size(), name, notes).read();
+  return GltfReader(json, binary, bytes.size(), name, files, notes).read();
+}
+
+ControlMesh parse_gltf(std::string_view bytes, const std::string& name, const OtherFiles& files,
+                       const Notes& notes) {
+  return joined(read_gltf(bytes, name, files, notes), name, notes);
 }
 
 }  // namespace snug

@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
+#include <snug/io/other_file.h>
 #include <support/binary.h>
 #include <support/number.h>
 
 #include <testing/files.h>
 
-namespace snug::parse_glb_test {
+namespace snug::parse_gltf_test {
 namespace {
 
 using nlohmann::json;
@@ -76,7 +77,7 @@ class File {
     return container(whole.dump(), binary);
   }
   [[nodiscard]] ControlMesh read(const Notes& notes = {}) const {
-    return parse_glb(bytes(), "in.glb", notes);
+    return parse_gltf(bytes(), "in.glb", {}, notes);
   }
   [[nodiscard]] std::string refusal() const {
     return unreadable([&] { static_cast<void>(read()); });
@@ -98,7 +99,7 @@ std::string bytes_with(const std::string& members) {
   whole.replace(whole.find(plain), plain.size(), plain + members);
   return container(whole, file.binary);
 }
-ControlMesh read_with(const std::string& members) { return parse_glb(bytes_with(members), "in.glb"); }
+ControlMesh read_with(const std::string& members) { return parse_gltf(bytes_with(members), "in.glb"); }
 std::string refusal_with(const std::string& members) {
   return unreadable([&] { static_cast<void>(read_with(members)); });
 }
@@ -116,18 +117,18 @@ std::vector<Ids> faces(const ControlMesh& mesh) {
   return all;
 }
 
-TEST(parse_glb, reads_back_what_is_written) {
+TEST(parse_gltf, reads_back_what_is_written) {
   ControlMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}, {0.25, 3, -2}};
   for (const auto& f : {Ids{0, 1, 2}, Ids{0, 3, 1}, Ids{1, 3, 2}}) {
     mesh.add_face(std::vector<VertexId>(f.begin(), f.end()));
   }
-  expect_same_arrays(mesh, parse_glb(format_glb(mesh, "a.glb"), "a.glb"));
+  expect_same_arrays(mesh, parse_gltf(format_glb(mesh, "a.glb"), "a.glb"));
   const std::vector<Vector3> normals(4, {0, 0, 1});
-  expect_same_arrays(mesh, parse_glb(format_glb(mesh, "a.glb", {}, normals), "a.glb"));
+  expect_same_arrays(mesh, parse_gltf(format_glb(mesh, "a.glb", {}, normals), "a.glb"));
 }
 
-TEST(parse_glb, lists_strips_and_fans_turn_as_the_specification_says) {
+TEST(parse_gltf, lists_strips_and_fans_turn_as_the_specification_says) {
   File file = strip();
   file.indices<std::uint16_t>({0, 1, 2, 2, 1, 3}, 5123);
   EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{2, 1, 3}}));
@@ -139,7 +140,7 @@ TEST(parse_glb, lists_strips_and_fans_turn_as_the_specification_says) {
   EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{1, 3, 2}, Ids{3, 4, 2}}));
 }
 
-TEST(parse_glb, indices_may_be_of_8_16_and_32_bits_or_none) {
+TEST(parse_gltf, indices_may_be_of_8_16_and_32_bits_or_none) {
   const auto with = [](const auto& add) {
     File file = strip();
     add(file);
@@ -154,7 +155,7 @@ TEST(parse_glb, indices_may_be_of_8_16_and_32_bits_or_none) {
   EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{1, 3, 2}}));  // welded
 }
 
-TEST(parse_glb, reads_interleaved_and_sparse_accessors) {
+TEST(parse_gltf, reads_interleaved_and_sparse_accessors) {
   File file;
   const std::size_t view = file.view<float>({9, 0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0}, 16);
   file.primitive()["attributes"]["POSITION"] = file.accessor(view, 5126, 3, "VEC3");
@@ -182,7 +183,7 @@ TEST(parse_glb, reads_interleaved_and_sparse_accessors) {
   EXPECT_EQ(zeros.read().points, (std::vector<Point3>{{0, 0, 0}, {5, 6, 7}, {8, 9, 10}}));
 }
 
-TEST(parse_glb, quantized_positions_are_integers_or_parts_of_the_largest) {
+TEST(parse_gltf, quantized_positions_are_integers_or_parts_of_the_largest) {
   File file;
   const std::size_t view = file.view<std::int8_t>({0, 0, 0, 0, 127, 0, 0, 0, -128, 64, 0, 0}, 4);
   file.primitive()["attributes"]["POSITION"] = file.accessor(view, 5120, 3, "VEC3");
@@ -192,7 +193,7 @@ TEST(parse_glb, quantized_positions_are_integers_or_parts_of_the_largest) {
   EXPECT_EQ(file.read().points, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {-1, 64.0 / 127, 0}}));
 }
 
-TEST(parse_glb, nodes_move_their_meshes) {
+TEST(parse_gltf, nodes_move_their_meshes) {
   File file = strip();
   file.indices<std::uint8_t>({0, 1, 2}, 5121);
   file.text["nodes"] = json::array(
@@ -211,7 +212,7 @@ TEST(parse_glb, nodes_move_their_meshes) {
   EXPECT_EQ(corners(file.read(), 0), (Ids{0, 2, 1}));
 }
 
-TEST(parse_glb, equal_corners_are_welded_within_a_node) {
+TEST(parse_gltf, equal_corners_are_welded_within_a_node) {
   File file;
   // Two triangles beside each other, of two primitives.
   file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -228,7 +229,7 @@ TEST(parse_glb, equal_corners_are_welded_within_a_node) {
   EXPECT_EQ(file.read().points[1], (Point3{1, 1, 0}));  // in the order of the scene
 }
 
-TEST(parse_glb, scenes_say_which_nodes_count) {
+TEST(parse_gltf, scenes_say_which_nodes_count) {
   File file = strip();
   file.indices<std::uint8_t>({0, 1, 2}, 5121);
   file.text["nodes"] = json::array({{{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}}});
@@ -242,7 +243,7 @@ TEST(parse_glb, scenes_say_which_nodes_count) {
   EXPECT_EQ(file.read().face_count(), 3u);
 }
 
-TEST(parse_glb, what_makes_no_triangles_is_left_out_with_a_note) {
+TEST(parse_gltf, what_makes_no_triangles_is_left_out_with_a_note) {
   File file = strip();
   file.indices<std::uint8_t>({0, 1, 2, 2, 2, 3}, 5121);
   EXPECT_EQ(file.read().face_count(), 1u);
@@ -262,7 +263,7 @@ TEST(parse_glb, what_makes_no_triangles_is_left_out_with_a_note) {
   EXPECT_EQ(file.refusal(), "in.glb: the file has no triangles in its scene");
 }
 
-TEST(parse_glb, faults_name_what_is_wrong) {
+TEST(parse_gltf, faults_name_what_is_wrong) {
   const auto changed = [](const auto& change) {
     File file = strip();
     file.indices<std::uint8_t>({0, 1, 2, 0}, 5121);
@@ -277,7 +278,9 @@ TEST(parse_glb, faults_name_what_is_wrong) {
   EXPECT_EQ(changed([](File& f) {
               f.text["buffers"] = {{{"byteLength", 100}, {"uri", "a.bin"}}};
             }),
-            "in.glb: glTF: buffer 0 is not in the file: write one .glb file with all in it");
+            "in.glb: glTF: buffer 0 is in the file 'a.bin', which is not at hand: give the path of the file, "
+            "or write one "
+            ".glb file with all in it");
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["count"] = 6; }),
             "in.glb: glTF: an accessor of 6 elements ends beyond its buffer view");
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["byteOffset"] = 1; }),
@@ -350,9 +353,9 @@ void expect_nearest_doubles() {
   }
 }
 
-TEST(parse_glb, numbers_are_the_nearest_doubles) { expect_nearest_doubles(); }
+TEST(parse_gltf, numbers_are_the_nearest_doubles) { expect_nearest_doubles(); }
 
-TEST(parse_glb, numbers_do_not_depend_on_the_locale) {
+TEST(parse_gltf, numbers_do_not_depend_on_the_locale) {
   const std::string before = std::setlocale(LC_NUMERIC, nullptr);
   const char* found = nullptr;
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "ru_RU.UTF-8", "pl_PL.UTF-8"}) {
@@ -364,7 +367,7 @@ TEST(parse_glb, numbers_do_not_depend_on_the_locale) {
   std::setlocale(LC_NUMERIC, before.c_str());
 }
 
-TEST(parse_glb, text_that_is_not_json_is_refused) {
+TEST(parse_gltf, text_that_is_not_json_is_refused) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {",\"a\":[1,]", "unexpected ']'"},
       {",\"a\" 1", "expected ':'"},
@@ -390,22 +393,22 @@ TEST(parse_glb, text_that_is_not_json_is_refused) {
   }
 }
 
-TEST(parse_glb, zeros_do_not_end_the_text) {
+TEST(parse_gltf, zeros_do_not_end_the_text) {
   const std::string text = R"({"asset": {"version": "2.0"}})";
   for (const std::string& whole : {text + '\0', text + std::string("\0]", 2), '\0' + text}) {
     const std::string message =
-        unreadable([&] { static_cast<void>(parse_glb(container(whole, ""), "in.glb")); });
+        unreadable([&] { static_cast<void>(parse_gltf(container(whole, ""), "in.glb")); });
     EXPECT_EQ(message,
               "in.glb: glTF: byte " + std::to_string(whole.find('\0')) + " of the JSON text is zero");
   }
 }
 
-TEST(parse_glb, escapes_are_decoded_and_the_last_of_equal_names_counts) {
+TEST(parse_gltf, escapes_are_decoded_and_the_last_of_equal_names_counts) {
   EXPECT_EQ(read_with(R"(,"translation":[1,0,0],"tr\u0061nslation":[2,0,0])").points[0].x, 2);
   EXPECT_EQ(read_with(R"(,"translation":"none","translation":[3,0,0])").points[0].x, 3);
 }
 
-TEST(parse_glb, text_may_be_nested_deep_and_long) {
+TEST(parse_gltf, text_may_be_nested_deep_and_long) {
   const std::size_t depth = 200'000;
   EXPECT_EQ(read_with(",\"extras\":" + std::string(depth, '[') + std::string(depth, ']')).face_count(), 1u);
   EXPECT_NE(refusal_with(",\"extras\":" + std::string(depth, '[')).find("unexpected"), std::string::npos);
@@ -414,7 +417,7 @@ TEST(parse_glb, text_may_be_nested_deep_and_long) {
   EXPECT_EQ(read_with(many + "\"\":0}").face_count(), 1u);
 }
 
-TEST(parse_glb, values_of_another_kind_are_refused) {
+TEST(parse_gltf, values_of_another_kind_are_refused) {
   for (const char* value : {"1", "\"1\"", "null", "{\"a\":1}", "[1,2]", "[1,2,\"3\"]", "[1,2,null]"}) {
     const std::string message = refusal_with(std::string(",\"scale\":") + value);
     EXPECT_TRUE(message.starts_with("in.glb: glTF: 'scale' of node 0 ")) << value << ": " << message;
@@ -425,14 +428,20 @@ TEST(parse_glb, values_of_another_kind_are_refused) {
   }
   EXPECT_EQ(refusal_with(",\"children\":7"), "in.glb: glTF: 'children' is not a list");
   for (const char* whole : {"[]", "7", "null", "\"a\"", R"({"asset": 2})", R"({"asset": {"version": 2}})"}) {
-    EXPECT_EQ(unreadable([&] { static_cast<void>(parse_glb(container(whole, ""), "in.glb")); }),
+    EXPECT_EQ(unreadable([&] { static_cast<void>(parse_gltf(container(whole, ""), "in.glb")); }),
               "in.glb: glTF: only version 2.0 is read");
   }
 }
 
-TEST(parse_glb, instances_are_bounded) {
+TEST(parse_gltf, instances_are_bounded) {
   File file = strip();
-  file.indices<std::uint8_t>(std::vector<std::uint8_t>(3000, 0), 5121);
+  file.indices<std::uint8_t>(
+      [] {
+        std::vector<std::uint8_t> corners;
+        for (int t = 0; t < 1000; ++t) corners.insert(corners.end(), {0, 1, 2});
+        return corners;
+      }(),
+      5121);
   file.text["nodes"] = json::array();
   file.text["scenes"][0]["nodes"] = json::array();
   for (int n = 0; n < 4000; ++n) {
@@ -444,22 +453,160 @@ TEST(parse_glb, instances_are_bounded) {
       "in.glb: glTF: instances or shared values make more than 100 times the file: write fewer of them");
 }
 
-TEST(parse_glb, containers_must_be_whole) {
+TEST(parse_gltf, containers_must_be_whole) {
   File file = strip();
   file.indices<std::uint8_t>({0, 1, 2}, 5121);
   const std::string bytes = file.bytes();
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
-    EXPECT_FALSE(unreadable([&] { static_cast<void>(parse_glb(bytes.substr(0, size), "in.glb")); }).empty());
+    EXPECT_FALSE(unreadable([&] { static_cast<void>(parse_gltf(bytes.substr(0, size), "in.glb")); }).empty());
   }
   const auto refusal = [](const std::string& text) {
-    return unreadable([&] { static_cast<void>(parse_glb(text, "in.glb")); });
+    return unreadable([&] { static_cast<void>(parse_gltf(text, "in.glb")); });
   };
-  EXPECT_EQ(refusal("OFF\n"), "in.glb: this is not a binary glTF file: it does not begin with 'glTF'");
+  EXPECT_EQ(refusal("OFF\n"), "in.glb: this is not a glTF file: it begins neither with 'glTF' nor with '{'");
   EXPECT_EQ(refusal(bytes + "x"), "in.glb: glTF: the file declares " + std::to_string(bytes.size()) +
                                       " bytes, but has " + std::to_string(bytes.size() + 1));
   EXPECT_EQ(refusal("glTF" + std::string("\1\0\0\0", 4) + bytes.substr(8)),
             "in.glb: glTF: version 1 is not read: write version 2");
 }
 
+// --- text, and buffers in other places
+
+std::string text_of(const File& file, const json& buffer) {
+  json whole = file.text;
+  whole["buffers"] = {buffer};
+  return whole.dump(2);
+}
+std::string data_uri(const std::string& bytes) {
+  std::string uri = "data:application/octet-stream;base64,";
+  append_base64(uri, bytes);
+  return uri;
+}
+File plain() {
+  File file = strip();
+  file.indices<std::uint8_t>({0, 1, 2, 2, 1, 3, 4}, 5121);  // 67 bytes
+  file.text["accessors"][1]["count"] = 6;
+  return file;
+}
+
+TEST(parse_gltf, text_holds_its_buffer_or_names_a_file) {
+  const File file = plain();
+  const ControlMesh wanted = file.read();
+  const std::size_t size = file.binary.size();
+  const std::string inside = text_of(file, {{"byteLength", size}, {"uri", data_uri(file.binary)}});
+  expect_same_arrays(wanted, parse_gltf(inside, "in.gltf"));
+  expect_same_arrays(wanted, parse_gltf("\xEF\xBB\xBF" + inside, "in.gltf"));
+  EXPECT_EQ(parse_gltf(inside, "in.gltf").metres_per_unit, 1.0);
+  std::vector<std::string> asked;
+  const OtherFiles files = [&](const std::string& path) {
+    asked.push_back(path);
+    return file.binary;
+  };
+  const std::string outside = text_of(file, {{"byteLength", size}, {"uri", "a%20b/./c.bin"}});
+  expect_same_arrays(wanted, parse_gltf(outside, "in.gltf", files));
+  EXPECT_EQ(asked, (std::vector<std::string>{"a b/./c.bin"}));  // once
+}
+
+TEST(parse_gltf, buffers_that_are_not_there_are_refused) {
+  const File file = plain();
+  const std::size_t size = file.binary.size();
+  const auto refusal = [&](const json& buffer, const OtherFiles& files = {}) {
+    return unreadable([&] { static_cast<void>(parse_gltf(text_of(file, buffer), "in.gltf", files)); });
+  };
+  const std::string front = "in.gltf: glTF: buffer 0";
+  EXPECT_EQ(refusal({{"byteLength", size}}), front + " has no 'uri', and no bytes in the file");
+  const OtherFiles none = [](const std::string& path) -> std::string {
+    throw InputError(InputProblem::unreadable, path + ": no such file");
+  };
+  EXPECT_EQ(refusal({{"byteLength", size}, {"uri", "a.bin"}}, none), front + ": a.bin: no such file");
+  const OtherFiles shorter = [&](const std::string&) { return file.binary.substr(1); };
+  EXPECT_EQ(refusal({{"byteLength", size}, {"uri", "a.bin"}}, shorter),
+            "in.gltf: glTF: buffer view 1 ends beyond its buffer: the file is truncated");
+  for (const char* uri : {"../a.bin", "../a/b.bin", "../a/b/c.bin", "/etc/passwd", "a/../../a.bin", "..",
+                          "%2e%2e/a.bin", "..\\a.bin", "C:/a.bin", ".", "b/.."}) {
+    EXPECT_NE(refusal({{"byteLength", size}, {"uri", uri}}, none).find("leads out of the file's folder"),
+              std::string::npos)
+        << uri;
+  }
+  EXPECT_NE(refusal({{"byteLength", size}, {"uri", "https://a.b/c.bin"}}, none).find("is an address"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"byteLength", size}, {"uri", "a%00.bin"}}, none).find("is not the name of a file"),
+            std::string::npos);
+  EXPECT_EQ(refusal({{"byteLength", size}, {"uri", "data:,abc"}}), front + ": a data URI that is not base64");
+  EXPECT_EQ(refusal({{"byteLength", size}, {"uri", "data:;base64,AAAAA"}}),
+            front + ": the data URI is truncated");
+  EXPECT_EQ(refusal({{"byteLength", size}, {"uri", "data:;base64,AA*A"}}),
+            front + ": '*' in a data URI is not base64");
+}
+
+TEST(parse_gltf, base64_is_read_back) {
+  std::string bytes;
+  for (int size = 0; size < 9; ++size) {
+    EXPECT_EQ(data_of_uri(data_uri(bytes), "in", "buffer"), bytes);
+    bytes += static_cast<char>(250 - 37 * size);
+  }
+}
+
+TEST(parse_gltf, what_is_written_as_text_is_read_back) {
+  const ControlMesh mesh = plain().read();
+  expect_same_arrays(mesh, parse_gltf(format_gltf(mesh, "a.gltf"), "a.gltf"));
+  EXPECT_EQ(parse_gltf(format_gltf(mesh, "a.gltf"), "a.gltf").points,
+            parse_gltf(format_glb(mesh, "a.glb"), "a.glb").points);
+}
+
+TEST(parse_gltf, counts_may_go_beyond_a_short_text_with_a_long_buffer) {
+  File file;
+  std::vector<float> values(3 * 400'000, 0.5f);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 1009);
+  values.resize(values.size() / 9 * 9);
+  file.positions(values);
+  const OtherFiles files = [&](const std::string&) { return file.binary; };
+  const std::string text = text_of(file, {{"byteLength", file.binary.size()}, {"uri", "a.bin"}});
+  EXPECT_GT(parse_gltf(text, "in.gltf", files).face_count(), 130'000u);
+}
+
+// --- scenes
+
+TEST(parse_gltf, rigid_nodes_are_parts_that_share_their_mesh) {
+  File file = plain();
+  file.text["nodes"] = json::array({{{"mesh", 0}, {"name", "a"}},
+                                    {{"mesh", 0}, {"name", "a"}, {"translation", {5, 0, 0}}},
+                                    {{"mesh", 0}, {"rotation", {0, 0, 1, 0}}},
+                                    {{"mesh", 0}, {"name", "large"}, {"scale", {2, 2, 2}}},
+                                    {{"mesh", 0}, {"name", "mirrored"}, {"scale", {-1, 1, 1}}}});
+  file.text["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+  const ControlMesh whole = file.read();
+  const MeshAssembly parts = parse_assembly(file.bytes(), "in.glb");
+  ASSERT_EQ(parts.parts.size(), 5u);
+  EXPECT_EQ(parts.meshes.size(), 3u);
+  std::vector<std::string> names;
+  std::size_t first = 0;
+  for (const MeshAssembly::Part& part : parts.parts) {
+    names.push_back(part.name);
+    const ControlMesh& own = parts.meshes[part.mesh];
+    for (std::size_t v = 0; v < own.points.size(); ++v) {
+      const Point3 placed = part.pose.apply(own.points[v]);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(placed[axis], whole.points[first + v][axis], 1e-14);
+    }
+    for (std::size_t k = 0; k < own.face_vertices.size(); ++k) {
+      EXPECT_EQ(
+          own.face_vertices[k].index() + first,
+          whole.face_vertices[&part - parts.parts.data() == 0 ? k : k + 6 * (&part - parts.parts.data())]
+              .index());
+    }
+    first += own.points.size();
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "a#2", "2", "large", "mirrored"}));
+  EXPECT_EQ(parts.parts[1].pose, Motion::translation({5, 0, 0}));
+}
+
+TEST(parse_gltf, other_formats_are_one_part) {
+  const MeshAssembly one = parse_assembly("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "dir/part.obj");
+  ASSERT_EQ(one.parts.size(), 1u);
+  EXPECT_EQ(one.parts[0].name, "part");
+  EXPECT_EQ(one.meshes[0].face_count(), 1u);
+}
+
 }  // namespace
-}  // namespace snug::parse_glb_test
+}  // namespace snug::parse_gltf_test

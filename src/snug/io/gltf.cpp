@@ -1,4 +1,5 @@
 #include <snug/io/formats.h>
+#include <snug/io/other_file.h>
 
 #include <algorithm>
 #include <array>
@@ -67,7 +68,9 @@ void append_view(std::string& json, std::size_t begin, std::size_t size, const c
   json += target;
 }
 
-std::string describe(const std::vector<Position>& positions, bool normals, std::size_t triangles) {
+/// `uri`: of the buffer; empty for the chunk of a binary file.
+std::string describe(const std::vector<Position>& positions, bool normals, std::size_t triangles,
+                     std::string_view uri) {
   constexpr const char *vertices = ",\"target\":34962}", *indices = ",\"target\":34963}";
   const std::size_t vector_bytes = positions.size() * position_size;
   const std::size_t index_bytes = 3 * triangles * index_size;
@@ -77,6 +80,7 @@ std::string describe(const std::vector<Position>& positions, bool normals, std::
   json += normals ? R"(,"NORMAL":2},"indices":1,"mode":4}]}],)" : R"(},"indices":1,"mode":4}]}],)";
   json += R"("buffers":[{"byteLength":)";
   append_integer(json, vectors + index_bytes);
+  if (!uri.empty()) json.append(R"(,"uri":")").append(uri) += '"';
   json += R"(}],"bufferViews":[)";
   append_view(json, 0, vector_bytes, vertices);
   append_view(json, vectors, index_bytes, indices);
@@ -105,31 +109,11 @@ void append_normals(std::string& bytes, std::span<const Vector3> normals) {
   }
 }
 
-}  // namespace
-
-std::string format_glb(const ControlMesh& mesh, const std::string& name, const Notes& notes,
-                       std::span<const Vector3> normals) {
-  SNUG_EXPECT(normals.empty() || normals.size() == mesh.vertex_count());
-  const std::size_t triangles = count_triangles(mesh, name, notes);
-  const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
-  const std::string json = describe(positions, !normals.empty(), triangles);
-  // Both sorts of values take whole words: nothing is left to pad.
-  const std::size_t binary_size =
-      (positions.size() + normals.size()) * position_size + 3 * triangles * index_size;
-  const std::size_t size =
-      glb_header_size + glb_chunk_head_size + json.size() + glb_chunk_head_size + binary_size;
-  if (size > std::numeric_limits<std::uint32_t>::max()) {
-    refuse(name, "the mesh takes more than the 4 GiB of a binary glTF file: write PLY");
-  }
-  std::string bytes = "glTF";
-  bytes.reserve(size);
-  append_binary(bytes, std::uint32_t{2});
-  append_binary(bytes, static_cast<std::uint32_t>(size));
-  append_binary(bytes, static_cast<std::uint32_t>(json.size()));
-  bytes += "JSON";
-  bytes += json;
-  append_binary(bytes, static_cast<std::uint32_t>(binary_size));
-  bytes.append("BIN\0", 4);
+/// Positions, normals and indices: whole words, nothing is left to pad.
+std::string buffer_of(const ControlMesh& mesh, const std::vector<Position>& positions,
+                      std::span<const Vector3> normals, std::size_t triangles) {
+  std::string bytes;
+  bytes.reserve((positions.size() + normals.size()) * position_size + 3 * triangles * index_size);
   for (const Position& position : positions) {
     for (const float x : position) append_binary(bytes, x);
   }
@@ -143,6 +127,43 @@ std::string format_glb(const ControlMesh& mesh, const std::string& name, const N
     }
   }
   return bytes;
+}
+
+}  // namespace
+
+std::string format_glb(const ControlMesh& mesh, const std::string& name, const Notes& notes,
+                       std::span<const Vector3> normals) {
+  SNUG_EXPECT(normals.empty() || normals.size() == mesh.vertex_count());
+  const std::size_t triangles = count_triangles(mesh, name, notes);
+  const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
+  const std::string json = describe(positions, !normals.empty(), triangles, {});
+  const std::string buffer = buffer_of(mesh, positions, normals, triangles);
+  const std::size_t size =
+      glb_header_size + glb_chunk_head_size + json.size() + glb_chunk_head_size + buffer.size();
+  if (size > std::numeric_limits<std::uint32_t>::max()) {
+    refuse(name, "the mesh takes more than the 4 GiB of a binary glTF file: write PLY");
+  }
+  std::string bytes = "glTF";
+  bytes.reserve(size);
+  append_binary(bytes, std::uint32_t{2});
+  append_binary(bytes, static_cast<std::uint32_t>(size));
+  append_binary(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON";
+  bytes += json;
+  append_binary(bytes, static_cast<std::uint32_t>(buffer.size()));
+  bytes.append("BIN\0", 4);
+  bytes += buffer;
+  return bytes;
+}
+
+std::string format_gltf(const ControlMesh& mesh, const std::string& name, const Notes& notes,
+                        std::span<const Vector3> normals) {
+  SNUG_EXPECT(normals.empty() || normals.size() == mesh.vertex_count());
+  const std::size_t triangles = count_triangles(mesh, name, notes);
+  const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
+  std::string uri = "data:application/octet-stream;base64,";
+  append_base64(uri, buffer_of(mesh, positions, normals, triangles));
+  return describe(positions, !normals.empty(), triangles, uri);
 }
 
 }  // namespace snug
