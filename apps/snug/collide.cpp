@@ -158,8 +158,8 @@ ExitStatus run_scene(const Options& options) {
   if (certificate.wanted()) run.require_alone();
   KeptAnswers<PairCollision> proved;
   SceneQuestion question;
-  question.key =
-      fmt::format("{} {}{} {} {}", tolerance.number, tolerance.percent, tolerance.unit, options.solid, options.max_splits);
+  question.key = fmt::format("{} {}{} {} {}", tolerance.number, tolerance.percent, tolerance.unit,
+                             options.solid, options.max_splits);
   question.margin = text.margin;
   question.all_pairs = options.all_pairs;
   question.header = "verdict lower upper ax ay az bx by bz";
@@ -218,8 +218,8 @@ ExitStatus run(const Options& options) {
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, {.monitor = &monitor});
   if (depth && depth->depth.lower > 0) prove_contact(answer);
-  const std::optional<Contacts> all =
-      all_contacts(options, *wanted.tolerance, precision.in_mesh_units(pair.size(), pair.units()), pair, monitor);
+  const std::optional<Contacts> all = all_contacts(
+      options, *wanted.tolerance, precision.in_mesh_units(pair.size(), pair.units()), pair, monitor);
   // A curve, a crossing or an area proves what the verdict alone may not.
   if (all && std::any_of(all->regions.begin(), all->regions.end(), [](const ContactRegion& region) {
         return region.verdict == Verdict::intersecting;

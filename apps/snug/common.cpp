@@ -64,10 +64,10 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 }
 
 void add_common_options(OptionList& list, CommonOptions& options) {
-  Option& scheme = add_scheme_option(
-      list, "--scheme", options.scheme,
-      "Subdivision scheme; auto: curve if the file has only polylines, flat for STL, glTF and 3MF, the file's own "
-      "if it names one, loop if all faces are triangles, otherwise catmark");
+  Option& scheme = add_scheme_option(list, "--scheme", options.scheme,
+                                     "Subdivision scheme; auto: curve if the file has only polylines, flat "
+                                     "for STL, glTF and 3MF, the file's own "
+                                     "if it names one, loop if all faces are triangles, otherwise catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")
@@ -81,7 +81,8 @@ void add_common_options(OptionList& list, CommonOptions& options) {
   list.add(Group::mesh, "--sharp ANGLE", &options.sharp,
            "For parts from CAD: edges whose face normals differ by more than ANGLE degrees stay sharp, and "
            "flat regions stay flat; auto: 30");
-  list.add(Group::mesh, "--scale FACTOR", &options.scale, "Multiply coordinates by this, before anything else")
+  list.add(Group::mesh, "--scale FACTOR", &options.scale,
+           "Multiply coordinates by this, before anything else")
       .between(1e-100, 1e100);
   list.add(Group::mesh, "--units UNIT", &options.units,
            "What the coordinates' units are, after --scale; default: what the file says (USD, 3MF, glTF: m)")
@@ -214,23 +215,29 @@ Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOpti
 
 std::optional<double> units_of(const Surface& surface) { return surface.mesh().metres_per_unit; }
 
-std::optional<double> common_units(std::span<const Surface> surfaces, std::span<const std::string> names) {
+std::optional<double> common_units(std::span<const std::optional<double>> units,
+                                   std::span<const std::string> names) {
   std::optional<std::size_t> known;
   bool all = true;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const std::optional<double> own = units_of(surfaces[i]);
-    all = all && own;
-    if (!own) continue;
-    if (known && *own != *units_of(surfaces[*known])) {
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    all = all && units[i];
+    if (!units[i]) continue;
+    if (known && *units[i] != *units[*known]) {
       throw InputError(InputProblem::refused,
-                       names[*known] + " is in " + text_of_unit(*units_of(surfaces[*known])) + ", " + names[i] +
-                           " in " + text_of_unit(*own) +
-                           ": bring both to one unit, such as by --scale-b 25.4 --units mm, or say by --units that they "
-                           "have it");
+                       names[*known] + " is in " + text_of_unit(*units[*known]) + ", " + names[i] + " in " +
+                           text_of_unit(*units[i]) +
+                           ": bring both to one unit, such as by --scale-b 25.4 --units mm, or say by "
+                           "--units that they have it");
     }
     known = i;
   }
-  return all && known ? units_of(surfaces[*known]) : std::nullopt;
+  return all && known ? units[*known] : std::nullopt;
+}
+
+std::optional<double> common_units(std::span<const Surface> surfaces, std::span<const std::string> names) {
+  std::vector<std::optional<double>> units;
+  for (const Surface& surface : surfaces) units.push_back(units_of(surface));
+  return common_units(units, names);
 }
 
 void require_closed(const Surface& surface) {

@@ -88,8 +88,10 @@ using OtherFile = std::function<std::string(const std::string& path)>;
                                    const std::string& scheme);
 /// Metres of a unit of its mesh, if they are known.
 [[nodiscard]] std::optional<double> units_of(const Surface& surface);
-/// The same of several that one answer is about; `names`: their files.
+/// The same of several meshes that one answer is about; `names`: their files.
 /// Errors:    InputError (refused) if the units of two are known and differ.
+[[nodiscard]] std::optional<double> common_units(std::span<const std::optional<double>> units,
+                                                 std::span<const std::string> names);
 [[nodiscard]] std::optional<double> common_units(std::span<const Surface> surfaces,
                                                  std::span<const std::string> names);
 /// Throws InputError (refused) unless the surface bounds a solid.
@@ -152,6 +154,7 @@ class Report {
 [[nodiscard]] Command subdivide_command();
 [[nodiscard]] Command tessellate_command();
 [[nodiscard]] Command convert_command();
+[[nodiscard]] Command robot_command();
 [[nodiscard]] Command hull_command();
 [[nodiscard]] Command envelope_command();
 [[nodiscard]] Command collide_command();

@@ -58,15 +58,20 @@ std::vector<Triangle> triangles_of(const ControlMesh& mesh, const std::string& p
   return triangles;
 }
 
-Candidate read_candidate(const Options& options) {
+// `units`: those of the candidate, if they are known.
+Candidate read_candidate(const Options& options, std::optional<double>& units) {
   const std::string& path = options.candidate;
   if (options.surface) {
-    return read_surface(path, options, options.scheme_b.empty() ? options.scheme : options.scheme_b);
+    Surface surface =
+        read_surface(path, options, options.scheme_b.empty() ? options.scheme : options.scheme_b);
+    units = units_of(surface);
+    return surface;
   }
   ProgressBar bar("reading " + path, options.quiet);
   const WorkMonitor monitor = bar.monitor();
   ControlMesh mesh = read_mesh(path, {{}, notes_for(options), {}}, {.monitor = &monitor});
   set_units(mesh, path, options);
+  units = mesh.metres_per_unit;
   if (mesh.face_count() == 0) {
     throw InputError(InputProblem::refused,
                      path + ": there are no triangles to compare; give a mesh with faces");
@@ -195,7 +200,9 @@ ExitStatus run(const Options& options) {
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--threshold", true);
   const Surface surface = read_surface(options.mesh, options, options.scheme);
-  const Candidate candidate = read_candidate(options);
+  std::array<std::optional<double>, 2> units{units_of(surface), {}};
+  const Candidate candidate = read_candidate(options, units[1]);
+  static_cast<void>(common_units(units, std::array{options.mesh, options.candidate}));
   DeviationOptions wanted;
   wanted.absolute = precision.in_mesh_units(surface.size(), units_of(surface));
   if (tolerance) wanted.threshold = tolerance->in_mesh_units(surface.size(), units_of(surface));

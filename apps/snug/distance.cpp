@@ -64,8 +64,8 @@ ExitStatus run_scene(const Options& options) {
   if (certificate.wanted()) run.require_alone();
   KeptAnswers<PairDistance> proved;
   SceneQuestion question;
-  question.key = fmt::format("{} {}{} {} {} {}", precision.number, precision.percent, precision.unit, options.relative,
-                             options.solid, options.max_splits);
+  question.key = fmt::format("{} {}{} {} {} {}", precision.number, precision.percent, precision.unit,
+                             options.relative, options.solid, options.max_splits);
   question.margin = within;
   question.margins = false;
   question.header = "lower upper ax ay az bx by bz";
@@ -95,7 +95,8 @@ ExitStatus run_scene(const Options& options) {
   }
   question.head = [&](JsonWriter& json) {
     json.field("limit", within).key("absolute");
-    precision.percent ? json.value(fmt::format("{}%", precision.number)) : json.value(precision.in_mesh_units(1, run.units()));
+    precision.percent ? json.value(fmt::format("{}%", precision.number))
+                      : json.value(precision.in_mesh_units(1, run.units()));
     json.field("relative", options.relative);
   };
   return run.answer(question, "distance", false);

@@ -40,7 +40,7 @@ struct Wrapped {
   std::string name;  // of the file
   std::vector<std::string> meshes, schemes;
   std::vector<PlacedSurface> parts;
-  double size = 0;                  // that lengths in percent are of
+  double size = 0;                // that lengths in percent are of
   std::optional<double> units{};  // in metres
 };
 
@@ -141,7 +141,8 @@ void write_summary(Report& report, const Options& options, const Wrapped& wrappe
 Wrapped read_wrapped(const Options& options, const WorkMonitor& monitor) {
   if (options.scene.empty()) {
     const Surface surface = read_surface(options.mesh, options, options.scheme);
-    return {options.mesh, {options.mesh}, {name_of(surface.scheme())}, {surface}, surface.size(), units_of(surface)};
+    return {options.mesh, {options.mesh}, {name_of(surface.scheme())},
+            {surface},    surface.size(), units_of(surface)};
   }
   const LoadedScene scene = load_scene(
       options.scene, options, options.nearest_rigid,
@@ -167,7 +168,8 @@ Found find(const Wrapped& wrapped, const Options& options, double error, const W
   if (!options.clearance.empty()) {
     how.clearance = parse_length(options.clearance, "--clearance").in_mesh_units(wrapped.size, wrapped.units);
   }
-  if (!options.gap.empty()) how.gap = parse_length(options.gap, "--gap").in_mesh_units(wrapped.size, wrapped.units);
+  if (!options.gap.empty())
+    how.gap = parse_length(options.gap, "--gap").in_mesh_units(wrapped.size, wrapped.units);
   Envelope wrap = envelope(wrapped.parts, how, run_of(options, monitor));
   Found found;
   const Surface& surface = wrapped.parts.front().surface();

@@ -71,16 +71,18 @@ std::string text_of_unit(double metres) {
 
 double Length::in_mesh_units(double size, std::optional<double> metres_per_unit) const {
   if (!unit.empty() && !metres_per_unit) {
-    throw UsageError("a length in " + unit +
-                     " needs a mesh whose units are known: give --units, or the length in mesh units or percent of the "
-                     "size (1%)");
+    throw UsageError(
+        "a length in " + unit +
+        " needs a mesh whose units are known: give --units, or the length in mesh units or percent of the "
+        "size (1%)");
   }
   const bool same = unit.empty() || metres_of(unit) == *metres_per_unit;
   const double in_own = same ? number : number * metres_of(unit) / *metres_per_unit;
   const double result = percent ? number / 100 * size : in_own;
   if (!std::isfinite(result) || (number > 0 && !(result > 0))) {
-    throw InputError(InputProblem::refused,
-                     "a length in percent or with a unit does not fit a double for this mesh: give it in mesh units");
+    throw InputError(
+        InputProblem::refused,
+        "a length in percent or with a unit does not fit a double for this mesh: give it in mesh units");
   }
   return result;
 }
@@ -100,9 +102,8 @@ Length parse_length(const std::string& text, const std::string& option, bool zer
     }
   }
   if (!parse_number(digits, length.number) || length.number < 0 || (length.number == 0 && !zero_allowed)) {
-    throw UsageError(
-        option + ": '" + text + "' is not a " + (zero_allowed ? "length" : "positive length") +
-        "; give mesh units (0.01), percent of the size (1%), or a length with a unit (0.1mm)");
+    throw UsageError(option + ": '" + text + "' is not a " + (zero_allowed ? "length" : "positive length") +
+                     "; give mesh units (0.01), percent of the size (1%), or a length with a unit (0.1mm)");
   }
   return length;
 }

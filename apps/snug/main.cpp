@@ -16,7 +16,8 @@ Program snug_program() {
       {collide_command(), contact_command(), clearance_command(), distance_command(),  deviation_command(),
        closest_command(), ray_command(),     bound_command(),     eval_command(),      info_command(),
        judge_command(),   measure_command(), self_command(),      subdivide_command(), tessellate_command(),
-       convert_command(), hull_command(),    envelope_command(),  render_command(),    view_command()},
+       convert_command(), robot_command(),   hull_command(),      envelope_command(),  render_command(),
+       view_command()},
       "snug-research (package snug-research) has independence, table, weights and fit, and repeats the "
       "measurements of the dissertation.",
       {{"independence", "", of_research},

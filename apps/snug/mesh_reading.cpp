@@ -29,7 +29,8 @@ void set_units(ControlMesh& mesh, const std::string& path, const CommonOptions& 
       for (std::size_t axis = 0; axis < 3; ++axis) {
         point[axis] *= options.scale;
         if (!std::isfinite(point[axis]))
-          throw InputError(InputProblem::refused, path + ": --scale brings a coordinate beyond the range of doubles");
+          throw InputError(InputProblem::refused,
+                           path + ": --scale brings a coordinate beyond the range of doubles");
       }
     }
     mesh.metres_per_unit.reset();

@@ -35,9 +35,11 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many) {
   add_bound_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme");
   add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B; overrides --scheme");
-  list.add(Group::mesh, "--scale-a FACTOR", &options.scale_a, "Multiply coordinates of A by this; overrides --scale")
+  list.add(Group::mesh, "--scale-a FACTOR", &options.scale_a,
+           "Multiply coordinates of A by this; overrides --scale")
       .between(1e-100, 1e100);
-  list.add(Group::mesh, "--scale-b FACTOR", &options.scale_b, "Multiply coordinates of B by this; overrides --scale")
+  list.add(Group::mesh, "--scale-b FACTOR", &options.scale_b,
+           "Multiply coordinates of B by this; overrides --scale")
       .between(1e-100, 1e100);
   if (!many) return;
   for (const char* name : {"--place", "--rotate", "--move", "--scheme", "--scale"}) {

@@ -16,12 +16,12 @@ struct PairOptions : CommonOptions {
   std::string scheme_a, scheme_b;
   PoseOptions pose_a, pose_b;
   bool nearest_rigid = false;
-  std::string poses;         ///< a file of poses; empty for none
+  std::string poses;                ///< a file of poses; empty for none
   double scale_a = 0, scale_b = 0;  ///< in place of --scale; 0: that
-  bool moves = false;        ///< other options have poses, too
-  std::string scene;         ///< a file of many parts, in place of both meshes; empty for none
-  std::string journal;       ///< --resume; empty for none
-  double rank_timeout = 60;  ///< seconds
+  bool moves = false;               ///< other options have poses, too
+  std::string scene;                ///< a file of many parts, in place of both meshes; empty for none
+  std::string journal;              ///< --resume; empty for none
+  double rank_timeout = 60;         ///< seconds
 };
 /// Those of two meshes and their poses; of commands that answer many, --poses and --scene too.
 void add_pair_options(OptionList& list, PairOptions& options, bool many = true);

@@ -186,7 +186,8 @@ class SceneReader {
  private:
   void add_part(const Json& part, const std::string& where) {
     if (!part.is_object()) fail_kind(where, part, "an object with \"mesh\"");
-    require_names(part, where + ": ", {"name", "mesh", "scheme", "boundary", "sharp", "weld", "scale", "units", "place"});
+    require_names(part, where + ": ",
+                  {"name", "mesh", "scheme", "boundary", "sharp", "weld", "scale", "units", "place"});
     if (!part.contains("mesh")) fail(where + ": \"mesh\" is missing");
     const std::uint32_t place = static_cast<std::uint32_t>(scene_.parts.size());
     const std::string name =
@@ -220,8 +221,8 @@ class SceneReader {
       const Json& value = part[name];
       *option = value.is_number() ? shortest(number_of(value, where)) : text_of(value, where + "." + name);
     }
-    const auto key = std::tuple(path, options.scheme, options.boundary, options.sharp, options.weld, options.scale,
-                                options.units);
+    const auto key = std::tuple(path, options.scheme, options.boundary, options.sharp, options.weld,
+                                options.scale, options.units);
     const auto [known, fresh] = meshes_.emplace(key, static_cast<std::uint32_t>(scene_.meshes.size()));
     if (fresh) {
       require_words(options, where);
@@ -418,7 +419,8 @@ std::vector<std::function<ControlMesh()>> meshes_of_text(const SceneText& text, 
     }
     const std::string& bytes = file->second;
     if (is_assembly(mesh.file)) {
-      auto control = std::make_shared<ControlMesh>(mesh_of(bytes, mesh.file, mesh.options, beside(mesh.file, read, of_all)));
+      auto control = std::make_shared<ControlMesh>(
+          mesh_of(bytes, mesh.file, mesh.options, beside(mesh.file, read, of_all)));
       meshes.emplace_back([control] { return std::move(*control); });
     } else {
       meshes.emplace_back([&bytes, &mesh] { return mesh_of(bytes, mesh.file, mesh.options); });

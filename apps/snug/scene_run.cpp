@@ -479,7 +479,8 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
     std::string key = fmt::format("{} {} {} {}", version_number, command, question.margin, question.key);
     for (const SceneMesh& mesh : loaded_.text.meshes) {
       const CommonOptions& own = mesh.options;
-      key += fmt::format("\n{}\t{}\t{}\t{}\t{}\t{}", own.scheme, own.boundary, own.sharp, own.weld, own.bounds, own.scale);
+      key += fmt::format("\n{}\t{}\t{}\t{}\t{}\t{}", own.scheme, own.boundary, own.sharp, own.weld,
+                         own.bounds, own.scale);
     }
     journal.emplace(options_.journal, fingerprint(key, loaded_.fingerprint));
     std::error_code none;

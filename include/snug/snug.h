@@ -17,6 +17,7 @@
 #include <snug/measure.h>
 #include <snug/mesh.h>
 #include <snug/ray.h>
+#include <snug/robot.h>
 #include <snug/scene.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>

@@ -15,6 +15,13 @@ struct SteadyMotion {
   Point3 about{};      ///< centre of rotation at time 0; it moves with the surface
 };
 
+/// A joint of a chain: it turns about an axis through the origin of its frame, or slides along it.
+struct ChainJoint {
+  Motion frame{};         ///< in that of the joint before, or of the world
+  Vector3 axis{0, 0, 1};  ///< in its frame, of any positive length
+  bool slides = false;
+};
+
 /// How a surface moves: a pose for every time in [0, duration()], continuous in time.
 ///
 /// Over [i, i + 1] piece i defines the motion, with s = t - i:
@@ -22,8 +29,9 @@ struct SteadyMotion {
 ///   S(s) x = Q(s) (R x + t - about) + about + s velocity + (sin(s radians) turning + (1 - cos(s radians)) n x turning) / radians
 ///
 /// where (R | t) is the pose `from`, n = axis / |axis|, and Q(s) rotates by s radians about n. A piece that
-/// ends in a given pose moves by S(s) + s (to - S(1)): exactly from `from` to `to`. All of this is in exact
-/// arithmetic, for the doubles of the piece.
+/// ends in a given pose moves by S(s) + s (to - S(1)): exactly from `from` to `to`. A piece of a chain moves by
+/// C(s) + (1 - s) (from - C(0)) + s (to - C(1)), likewise, where C(s) is the product of the chain's frames and of its joints at
+/// (1 - s) from + s to. All of this is in exact arithmetic, for the doubles of the piece.
 class SNUG_API Trajectory {
  public:
   /// Stays at a pose forever: duration() is 0.
@@ -40,6 +48,12 @@ class SNUG_API Trajectory {
   /// Starts at a pose and moves for one unit of time. Any number of turns.
   /// Errors:    InputError (value) for numbers that are not finite and for an axis of length 0.
   [[nodiscard]] static Trajectory steady(const Motion& from, const SteadyMotion& motion);
+  /// What a chain of joints moves: `tip` is its pose in the frame that the last joint moves. In each unit of time every joint
+  /// goes at a constant speed from its position in one list to that in the next: radians, or a length.
+  /// Errors:    InputError: (value) for no positions, lists that are not as long as the chain, numbers that are not finite,
+  ///            more than 1e8 turns, an axis of length 0; (pose), (unrepresentable) if a pose does not fit doubles.
+  [[nodiscard]] static Trajectory joints(std::span<const ChainJoint> chain, const Motion& tip,
+                                         std::span<const std::vector<double>> positions);
 
   [[nodiscard]] double duration() const { return static_cast<double>(pieces_.size()); }
   /// The pose at a time in double precision: up to some roundings, and exact at times of given poses.
@@ -55,6 +69,12 @@ class SNUG_API Trajectory {
     double radians = 0;
     Point3 about{};
     Vector3 velocity{}, turning{};
+    struct JointPath {
+      ChainJoint joint;
+      double from, to;
+    };
+    std::vector<JointPath> chain{};  ///< not empty: these move it, and none of the numbers above
+    Motion tip{};
   };
   [[nodiscard]] std::span<const Piece> pieces() const { return pieces_; }
   [[nodiscard]] const Motion& start() const { return start_; }

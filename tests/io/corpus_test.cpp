@@ -110,7 +110,8 @@ TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
   EXPECT_EQ(read("tetrahedron.glb").face_vertices, read("tetrahedron_binary.stl").face_vertices);
   for (const char* file : {"tetrahedron.gltf", "buffer_beside.gltf"})
     expect_same_arrays(read("tetrahedron.glb"), read(file));
-  for (const char* file : {"tetrahedron.3mf", "stored.3mf"}) expect_same_arrays(read("tetrahedron.off"), read(file));
+  for (const char* file : {"tetrahedron.3mf", "stored.3mf"})
+    expect_same_arrays(read("tetrahedron.off"), read(file));
   const ControlMesh facets = read("tetrahedron_binary.stl");
   EXPECT_EQ(facets.vertex_count(), 4u);
   for (const char* file : {"tetrahedron_ascii", "binary_solid", "binary_title_ply", "two_solids",

@@ -487,11 +487,13 @@ TEST(usda, a_mesh_without_a_scheme_is_written_with_that_of_its_faces) {
 }
 
 TEST(usda, prims_are_parts_with_their_own_rules) {
-  const std::string place = "double3 xformOp:translate = (5, 0, 0)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
-                    mirror = "double3 xformOp:scale = (-1, 1, 1)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]\n";
-  const std::string text = "#usda 1.0\n(\n    metersPerUnit = 0.01\n)\n" + mesh_prim(quad + place, "a") +
-                           "def Xform \"x\"\n{\n" +
-                           mesh_prim(triangle + "uniform token subdivisionScheme = \"loop\"\n" + mirror, "a") + "}\n";
+  const std::string
+      place =
+          "double3 xformOp:translate = (5, 0, 0)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
+      mirror = "double3 xformOp:scale = (-1, 1, 1)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]\n";
+  const std::string text =
+      "#usda 1.0\n(\n    metersPerUnit = 0.01\n)\n" + mesh_prim(quad + place, "a") + "def Xform \"x\"\n{\n" +
+      mesh_prim(triangle + "uniform token subdivisionScheme = \"loop\"\n" + mirror, "a") + "}\n";
   const MeshAssembly parts = parse_assembly(text, "in.usda");
   ASSERT_EQ(parts.parts.size(), 2u);
   EXPECT_EQ(parts.parts[0].name, "a");
@@ -504,7 +506,8 @@ TEST(usda, prims_are_parts_with_their_own_rules) {
   EXPECT_EQ(corners(parts.meshes[1], 0), (Ids{0, 2, 1}));
   EXPECT_EQ(parts.meshes[1].metres_per_unit, 0.01);
   // Together their rules would have to agree.
-  EXPECT_NE(unreadable([&] { static_cast<void>(parse_usda(text, "in.usda")); }).find("is not that of"), std::string::npos);
+  EXPECT_NE(unreadable([&] { static_cast<void>(parse_usda(text, "in.usda")); }).find("is not that of"),
+            std::string::npos);
 }
 
 }  // namespace

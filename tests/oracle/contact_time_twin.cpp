@@ -108,6 +108,71 @@ std::array<Real, 12> screwed(const TwinScrew& screw, double s) {
   return result;
 }
 
+// Of 4x4 matrices without their last row.
+template <class Number>
+std::array<Number, 12> product(const std::array<Number, 12>& a, const std::array<Number, 12>& b) {
+  std::array<Number, 12> result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      Number sum = a[4 * i] * b[j];
+      sum += a[4 * i + 1] * b[4 + j];
+      sum += a[4 * i + 2] * b[8 + j];
+      if (j == 3) sum += a[4 * i + 3];
+      result[4 * i + j] = sum;
+    }
+  }
+  return result;
+}
+
+template <class Number>
+std::array<Number, 12> matrix_of(const Placement& placement) {
+  std::array<Number, 12> result;
+  for (std::size_t k = 0; k < 12; ++k) result[k] = Number(placement[k]);
+  return result;
+}
+
+// Rodrigues' matrix, or a translation along the axis.
+template <class Number, class Sine, class Cosine, class Root>
+std::array<Number, 12> joint_matrix(const TwinChain::Joint& joint, const Number& at, const Sine& sine_of,
+                                    const Cosine& cosine_of, const Root& root_of) {
+  std::array<Number, 3> n{Number(joint.axis[0]), Number(joint.axis[1]), Number(joint.axis[2])};
+  const Number size = root_of(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (Number& x : n) x = x / size;
+  const Number zero(0.0), one(1.0);
+  std::array<Number, 12> m{one, zero, zero, zero, zero, one, zero, zero, zero, zero, one, zero};
+  if (joint.slides) {
+    for (std::size_t i = 0; i < 3; ++i) m[4 * i + 3] = at * n[i];
+    return m;
+  }
+  const Number sine = sine_of(at), cosine = cosine_of(at), rest = one - cosine;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    m[4 * i + i] = cosine + rest * n[i] * n[i];
+    m[4 * k + j] = rest * n[j] * n[k] + sine * n[i];
+    m[4 * j + k] = rest * n[j] * n[k] - sine * n[i];
+  }
+  return m;
+}
+
+template <class Number, class Sine, class Cosine, class Root>
+std::array<Number, 12> chained(const TwinChain& chain, const Number& s, const Sine& sine_of,
+                               const Cosine& cosine_of, const Root& root_of) {
+  const Number one(1.0), zero(0.0);
+  std::array<Number, 12> result{one, zero, zero, zero, zero, one, zero, zero, zero, zero, one, zero};
+  for (const TwinChain::Joint& joint : chain.joints) {
+    const Number at = (one - s) * Number(joint.from) + s * Number(joint.to);
+    result = product(product(result, matrix_of<Number>(joint.frame)),
+                     joint_matrix(joint, at, sine_of, cosine_of, root_of));
+  }
+  return product(result, matrix_of<Number>(chain.tip));
+}
+
+std::array<Real, 12> chained(const TwinChain& chain, double s) {
+  return chained(
+      chain, Real(s), [](const Real& x) { return unary(mpfi_sin, x); },
+      [](const Real& x) { return unary(mpfi_cos, x); }, [](const Real& x) { return unary(mpfi_sqrt, x); });
+}
+
 using Long = long double;
 using LongVector = std::array<Long, 3>;
 
@@ -145,6 +210,24 @@ std::array<double, 12> placement_errors(const TwinScrew& screw, double s, const 
     errors[k] = mpfr_get_d(&off.get()->right, MPFR_RNDU);
   }
   return errors;
+}
+
+std::array<double, 12> placement_errors(const TwinChain& chain, double s, const Placement& placement) {
+  const std::array<Real, 12> exact = chained(chain, s), first = chained(chain, 0), last = chained(chain, 1);
+  std::array<double, 12> errors{};
+  for (std::size_t k = 0; k < 12; ++k) {
+    const Real moved = exact[k] + (Real(1.0) - Real(s)) * (Real(chain.from[k]) - first[k]) +
+                       Real(s) * (Real(chain.to[k]) - last[k]);
+    const Real off = unary(mpfi_abs, moved - Real(placement[k]));
+    errors[k] = mpfr_get_d(&off.get()->right, MPFR_RNDU);
+  }
+  return errors;
+}
+
+std::array<long double, 12> placement_of(const TwinChain& chain, long double s) {
+  return chained(
+      chain, s, [](Long x) { return std::sin(x); }, [](Long x) { return std::cos(x); },
+      [](Long x) { return std::sqrt(x); });
 }
 
 long double separation(const Point& half_a, const Placement& a, const Point& half_b, const Placement& b) {

@@ -32,6 +32,23 @@ struct TwinScrew {
 [[nodiscard]] std::array<double, 12> placement_errors(const TwinScrew& screw, double s,
                                                       const Placement& placement);
 
+/// What a chain of joints moves, by the matrices of its frames and joints one after the other; with what is added so that it
+/// begins and ends in two placements. In the same intervals.
+struct TwinChain {
+  struct Joint {
+    Placement frame;
+    Point axis;
+    bool slides;
+    double from, to;
+  };
+  std::vector<Joint> joints;
+  Placement tip, from, to;
+};
+[[nodiscard]] std::array<double, 12> placement_errors(const TwinChain& chain, double s,
+                                                      const Placement& placement);
+/// The same chain without what is added, in long doubles, for a time in [0, 1].
+[[nodiscard]] std::array<long double, 12> placement_of(const TwinChain& chain, long double s);
+
 /// How far two boxes [-half, half] under placements are apart along the best of the fifteen axes; negative: so deep
 /// they penetrate. In long doubles, up to some of their roundings; exact up to the sign of the distance.
 [[nodiscard]] long double separation(const Point& half_a, const Placement& a, const Point& half_b,

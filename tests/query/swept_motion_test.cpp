@@ -21,6 +21,22 @@ using testing::unit;
 
 // Pieces of each kind: still, straight, turning, turning and moving, screws, screws of little rotation, many turns.
 constexpr std::size_t motion_kinds = 9;
+
+// One to six joints, of both sorts, some of which stay.
+PieceMotion chain_of(std::mt19937_64& random) {
+  std::vector<ChainJoint> chain(1 + random() % 6);
+  std::vector<std::vector<double>> positions(2);
+  for (ChainJoint& joint : chain) {
+    joint.frame = random_placement(random, random_vector(random, random() % 3));
+    joint.axis = random_vector(random, 1);
+    joint.slides = random() % 3 == 0;
+    positions[0].push_back(3 * unit(random));
+    positions[1].push_back(random() % 3 == 0 ? positions[0].back() : 3 * unit(random) - 1);
+  }
+  return PieceMotion(
+      Trajectory::joints(chain, random_placement(random, random_vector(random, 1)), positions).pieces()[0]);
+}
+
 PieceMotion motion_of(std::mt19937_64& random, std::size_t kind) {
   const Motion from = random_placement(random, random_vector(random, 2));
   const double radians = std::array{1.0, -2.0, 30.0, 1e-5}[random() % 4] * (0.5 + unit(random));
@@ -143,6 +159,48 @@ TEST(swept_heights, bend_no_more_than_their_bound_for_each_pair_of_motions_and_s
   // Of what moves alone the bound is met.
   for (const double share : nearest) EXPECT_GT(share, 0.9);
   EXPECT_GT(straight, 100u);
+}
+
+// Of chains against chains and against all other motions, for a direction that stays.
+TEST(swept_heights, bend_no_more_than_their_bound_where_chains_move) {
+  std::mt19937_64 random(8);
+  double nearest = 0;
+  for (std::size_t trial = 0; trial < 4000; ++trial) {
+    std::array<PieceMotion, 2> motions{chain_of(random), chain_of(random)};
+    if (trial % 2 == 0) motions[trial / 2 % 2] = motion_of(random, trial / 4 % motion_kinds);
+    std::array<OwnBall, 2> balls;
+    std::array<Point3, 2> points;
+    for (std::size_t s = 0; s < 2; ++s) {
+      balls[s] = {Point3{} + random_vector(random, 1), random() % 2 ? 0.0 : unit(random)};
+      points[s] = balls[s].centre + balls[s].radius * 0.999 * unit_vector(random);
+    }
+    const Vector3 w = unit_vector(random);
+    const double half = 0.5 * std::exp2(-12 * unit(random)), first = (1 - 2 * half) * unit(random);
+    const std::array<SweptMotion, 2> swept{SweptMotion(motions[0]), SweptMotion(motions[1])};
+    SweptHeights heights{.motions = {&swept[0], &swept[1]},
+                         .balls = balls,
+                         .centres = {},
+                         .levers = {swept[0].lever(balls[0]), swept[1].lever(balls[1])},
+                         .time = first + half,
+                         .half_step = half};
+    for (std::size_t s = 0; s < 2; ++s) {
+      heights.centres[s] = motions[s].at(first + half).pose.apply(balls[s].centre);
+      if (swept[s].is_chain()) heights.accelerations[s] = swept[s].moved(balls[s]).acceleration;
+    }
+    const double bound = heights.bending(w, 1e-14);
+    const auto height = [&](double time) {
+      return dot(w, motions[1].at(time).pose.apply(points[1]) - motions[0].at(time).pose.apply(points[0]));
+    };
+    const double start = height(first), end = height(first + 2 * half);
+    for (const double part : {0.1, 0.25, 0.5, 0.8}) {
+      const double off = std::fabs(height(first + part * 2 * half) - (start + part * (end - start)));
+      const double room = bound * 4 * half * half * part * (1 - part) / 2;
+      ASSERT_LE(off, room * (1 + 1e-9) + 1e-11) << trial;
+      if (off > 1e-6) nearest = std::max(nearest, off / room);
+    }
+  }
+  std::cout << "  chains: off by up to " << nearest << " of the bound\n";
+  EXPECT_GT(nearest, 0.5);
 }
 
 }  // namespace

@@ -51,6 +51,122 @@ Trajectory any_motion(std::mt19937_64& random) {
   }
 }
 
+// --- chains
+
+oracle::TwinChain twin_chain(const Trajectory::Piece& piece) {
+  oracle::TwinChain twin{{}, piece.tip.numbers(), piece.from.numbers(), piece.to.numbers()};
+  for (const auto& path : piece.chain) {
+    twin.joints.push_back(
+        {path.joint.frame.numbers(), plain(path.joint.axis), path.joint.slides, path.from, path.to});
+  }
+  return twin;
+}
+
+// One to seven joints that turn, slide, or stay; with frames of any size, and on each other.
+Trajectory any_chain(std::mt19937_64& random) {
+  const double far = std::exp2(static_cast<double>(random() % 20) - 10);
+  std::vector<ChainJoint> chain(1 + random() % 7);
+  std::vector<std::vector<double>> positions(2);
+  for (ChainJoint& joint : chain) {
+    joint.frame = random() % 4 == 0 ? Motion() : random_placement(random, random_vector(random, far));
+    joint.axis = random() % 3 == 0 ? Vector3{0, 0, 1} : random_vector(random, random() % 2 ? 1 : 1e-3);
+    joint.slides = random() % 4 == 0;
+    const double size = joint.slides ? far : std::array{3.0, 0.1, 1e-7, 40.0}[random() % 4];
+    positions[0].push_back(random() % 4 == 0 ? 0 : size * (2 * unit(random) - 1));
+    positions[1].push_back(random() % 4 == 0 ? positions[0].back() : size * (2 * unit(random) - 1));
+  }
+  return Trajectory::joints(
+      chain, random() % 4 == 0 ? Motion() : random_placement(random, random_vector(random, far)), positions);
+}
+
+TEST(trajectory, poses_of_chains_are_as_near_to_the_exact_ones_as_they_say) {
+  std::mt19937_64 random(11);
+  double widest = 0, closing = 0;
+  for (int trial = 0; trial < 1500; ++trial) {
+    const Trajectory motion = any_chain(random);
+    const PieceMotion piece(motion.pieces()[0]);
+    const double s = random() % 8 == 0 ? static_cast<double>(random() % 2) : unit(random);
+    const BoundedPose found = piece.at(s);
+    const auto errors = oracle::placement_errors(twin_chain(motion.pieces()[0]), s, found.pose.numbers());
+    double far = 1;
+    for (std::size_t i = 0; i < 3; ++i) far = std::max(far, std::fabs(found.pose.numbers()[4 * i + 3]));
+    for (std::size_t k = 0; k < 12; ++k) {
+      ASSERT_LE(errors[k], found.error[k] + 1e-30) << trial << ' ' << k;
+      widest = std::max(widest, found.error[k] / far);
+    }
+    closing = std::max(closing, piece.closing_growth());
+  }
+  EXPECT_LT(widest, 1e-10);   // slides of other sizes than places
+  EXPECT_LT(closing, 1e-10);  // seven joints of up to six turns
+}
+
+TEST(trajectory, chains_begin_and_end_where_their_joints_take_them) {
+  std::mt19937_64 random(12);
+  // An elbow: two links of length 2 and 1 in a plane.
+  const std::vector<ChainJoint> elbow{{}, {.frame = Motion::translation({2, 0, 0})}};
+  const std::vector<std::vector<double>> path{
+      {0, 0}, {std::numbers::pi / 2, 0}, {std::numbers::pi / 2, -std::numbers::pi / 2}};
+  const Trajectory motion = Trajectory::joints(elbow, Motion::translation({1, 0, 0}), path);
+  EXPECT_EQ(motion.duration(), 2);
+  const auto at = [&](double time) { return motion.at(time).apply({0, 0, 0}); };
+  EXPECT_NEAR(distance(at(0), {3, 0, 0}), 0, 1e-15);
+  EXPECT_NEAR(distance(at(1), {0, 3, 0}), 0, 1e-15);
+  EXPECT_NEAR(distance(at(2), {1, 2, 0}), 0, 1e-15);
+  EXPECT_NEAR(distance(at(0.5), {3 * std::sqrt(0.5), 3 * std::sqrt(0.5), 0}), 0, 1e-15);
+  EXPECT_EQ(motion.pieces()[0].to, motion.pieces()[1].from);
+  // One joint is a steady rotation.
+  const Motion tip = random_placement(random, {1, 2, 3});
+  const Trajectory one = Trajectory::joints(std::vector<ChainJoint>{{.axis = {1, 2, -1}}}, tip,
+                                            std::vector<std::vector<double>>{{0}, {1.5}}),
+                   steady = Trajectory::steady(tip, {{}, {1, 2, -1}, 1.5, {}});
+  for (double s = 0; s <= 1; s += 0.125) {
+    for (std::size_t k = 0; k < 12; ++k)
+      EXPECT_NEAR(one.at(s).numbers()[k], steady.at(s).numbers()[k], 1e-14);
+  }
+  // A single list of positions is a pose.
+  EXPECT_EQ(Trajectory::joints(elbow, {}, std::vector<std::vector<double>>{{0.5, 1}}).duration(), 0);
+}
+
+TEST(trajectory, chains_that_are_none_are_refused) {
+  const std::vector<ChainJoint> one(1), bad{{.axis = {0, 0, 0}}};
+  using Lists = std::vector<std::vector<double>>;
+  EXPECT_THROW(static_cast<void>(Trajectory::joints(one, {}, Lists{})), InputError);
+  EXPECT_THROW(static_cast<void>(Trajectory::joints(one, {}, Lists{{0}, {0, 1}})), InputError);
+  EXPECT_THROW(static_cast<void>(Trajectory::joints(one, {}, Lists{{0}, {NAN}})), InputError);
+  EXPECT_THROW(static_cast<void>(Trajectory::joints(one, {}, Lists{{0}, {1e10}})), InputError);
+  EXPECT_THROW(static_cast<void>(Trajectory::joints(bad, {}, Lists{{0}, {1}})), InputError);
+}
+
+// Differences of the twin's places against the bounds: nearly met where one joint moves.
+TEST(trajectory, no_point_of_a_chain_is_faster_than_the_bound) {
+  std::mt19937_64 random(13);
+  double best = 0;
+  for (int trial = 0; trial < 600; ++trial) {
+    ControlMesh mesh =
+        testing::turned(testing::box({-1, -1, -1}, {1.5, 2, 1}, true), random, false, 3 * unit(random));
+    const LimitSurface surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
+    const SurfaceBvh model(surface);
+    const Trajectory motion = any_chain(random);
+    const oracle::TwinChain twin = twin_chain(motion.pieces()[0]);
+    const double bound = PieceMotion(motion.pieces()[0]).speed(model);
+    const long double s = unit(random) * (1 - 1e-3L), ds = 1e-4L;
+    const auto before = oracle::placement_of(twin, s), after = oracle::placement_of(twin, s + ds);
+    double fastest = 0;
+    for (const Point3& p : mesh.points) {
+      long double sum = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        long double way = after[4 * i + 3] - before[4 * i + 3];
+        for (std::size_t j = 0; j < 3; ++j) way += (after[4 * i + j] - before[4 * i + j]) * p[j];
+        sum += way * way;
+      }
+      fastest = std::max(fastest, static_cast<double>(std::sqrt(sum) / ds));
+    }
+    ASSERT_LE(fastest, bound * (1 + 1e-9) + 1e-10) << trial;
+    if (bound > 1e-6) best = std::max(best, fastest / bound);
+  }
+  EXPECT_GT(best, 0.98);
+}
+
 TEST(trajectory, poses_are_as_near_to_the_exact_ones_as_they_say) {
   std::mt19937_64 random(1);
   double widest = 0;

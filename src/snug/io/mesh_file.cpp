@@ -76,8 +76,9 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
 
 /// The ending that names the format to read; empty for none.
 std::string format_to_read(const std::string& path) {
-  return format_among({"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb", ".gltf", ".3mf"},
-                      path, "read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf");
+  return format_among(
+      {"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb", ".gltf", ".3mf"}, path,
+      "read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf");
 }
 
 ControlMesh parsed(std::string_view bytes, const std::string& ending, const std::string& name,
@@ -85,7 +86,8 @@ ControlMesh parsed(std::string_view bytes, const std::string& ending, const std:
   if (ending == ".off") return parse_off(bytes, name);
   if (ending == ".ply") return parse_ply(bytes, name);
   if (ending == ".stl") return parse_stl(bytes, name);
-  if (ending == ".glb" || ending == ".gltf") return parse_gltf(bytes, name, options.other_file, options.notes);
+  if (ending == ".glb" || ending == ".gltf")
+    return parse_gltf(bytes, name, options.other_file, options.notes);
   if (ending == ".3mf") return parse_3mf(bytes, name, options.notes);
   if (ending.starts_with(".usd")) return parse_usda(bytes, name, options.notes);  // refuses binary ones
   return parse_obj(bytes, name, options.notes);
@@ -204,7 +206,10 @@ MeshAssembly read_assembly(const std::string& path, const ReadOptions& options, 
 MeshFormat format_of(const std::string& path) {
   const std::string ending = format_to_write(path);
   const bool gltf = ending == ".glb" || ending == ".gltf", floats = gltf || ending == ".stl";
-  return {.polygons = !floats && ending != ".3mf", .floats = floats, .normals = gltf, .scheme = ending == ".usda"};
+  return {.polygons = !floats && ending != ".3mf",
+          .floats = floats,
+          .normals = gltf,
+          .scheme = ending == ".usda"};
 }
 
 std::string format_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options,

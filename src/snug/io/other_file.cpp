@@ -47,7 +47,8 @@ std::string path_inside(std::string_view uri, const std::string& name, const std
   const std::string path = unescaped(uri);
   const auto fail = [&](const char* why) { fail_in_file(name, what + ": " + in_quotes(uri) + ' ' + why); };
   if (path.empty() || path.find('\0') != std::string::npos) fail("is not the name of a file");
-  if (path.find("://") != std::string::npos) fail("is an address, which is not followed: give a file beside this one");
+  if (path.find("://") != std::string::npos)
+    fail("is an address, which is not followed: give a file beside this one");
   const bool drive = path.size() > 1 && path[1] == ':' && std::isalpha(static_cast<unsigned char>(path[0]));
   if (path[0] == '/' || path.find('\\') != std::string::npos || drive || leads_outside(path))
     fail("leads out of the file's folder: give a path that stays in it, with /");

@@ -24,8 +24,9 @@ class Placer {
       const ControlMesh& mesh = placed.meshes[part.mesh];
       elements += mesh.face_vertices.size() + mesh.points.size();
       if (elements <= placed.max_elements) continue;
-      fail_in_file(name, part.what + ": more than " + std::to_string(placed.max_elements) +
-                             " vertices and corners, with all instances: write fewer of them, or split the file");
+      fail_in_file(name,
+                   part.what + ": more than " + std::to_string(placed.max_elements) +
+                       " vertices and corners, with all instances: write fewer of them, or split the file");
     }
   }
 

@@ -219,8 +219,8 @@ class Assembler {
     if (mesh_.face_count() == 0) return;
     set_rules();
     mesh_.metres_per_unit = stage_.metres_per_unit;
-    apart_->parts.push_back({std::string(stage_.prims[p].name), quoted_path(p), apart_->meshes.size(),
-                             maps_[inherited_[p].map]});
+    apart_->parts.push_back(
+        {std::string(stage_.prims[p].name), quoted_path(p), apart_->meshes.size(), maps_[inherited_[p].map]});
     apart_->meshes.push_back(std::move(mesh_));
   }
 

@@ -12,8 +12,8 @@ namespace {
 constexpr std::string_view xml_blanks = " \t\r\n";
 
 bool ends_name(char c) {
-  return xml_blanks.find(c) != std::string_view::npos || c == '=' || c == '/' || c == '>' || c == '<' || c == '"' ||
-         c == '\'';
+  return xml_blanks.find(c) != std::string_view::npos || c == '=' || c == '/' || c == '>' || c == '<' ||
+         c == '"' || c == '\'';
 }
 
 void append_utf8(std::string& text, std::uint32_t code) {
@@ -61,7 +61,8 @@ void XmlReader::skip_blanks() {
 
 void XmlReader::skip_past(std::string_view end, const char* what) {
   const std::size_t found = text_.find(end, at_);
-  if (found == std::string_view::npos) fail(std::string("XML: ") + what + " has no end: the file is truncated");
+  if (found == std::string_view::npos)
+    fail(std::string("XML: ") + what + " has no end: the file is truncated");
   at_ = found + end.size();
 }
 
@@ -105,7 +106,8 @@ XmlReader::Event XmlReader::next() {
     const std::size_t tag = text_.find('<', at_);
     if (open_.empty()) {
       const std::string_view between = text_.substr(at_, tag == std::string_view::npos ? tag : tag - at_);
-      if (between.find_first_not_of(xml_blanks) != std::string_view::npos) fail("XML: text outside of all elements");
+      if (between.find_first_not_of(xml_blanks) != std::string_view::npos)
+        fail("XML: text outside of all elements");
     }
     if (tag == std::string_view::npos) {
       if (!open_.empty()) fail("XML: " + in_quotes(open_.back()) + " has no end: the file is truncated");
@@ -128,7 +130,8 @@ XmlReader::Event XmlReader::next() {
       ++at_;
       element_ = take_name();
       skip_blanks();
-      if (at_ >= text_.size() || text_[at_] != '>') fail("XML: the end of " + in_quotes(element_) + " has no '>'");
+      if (at_ >= text_.size() || text_[at_] != '>')
+        fail("XML: the end of " + in_quotes(element_) + " has no '>'");
       ++at_;
       if (open_.empty() || open_.back() != element_) {
         fail("XML: " + in_quotes(element_) + " ends where " +
@@ -145,7 +148,8 @@ XmlReader::Event XmlReader::next() {
         ++at_;
         pending_end_ = true;
       }
-      if (at_ >= text_.size() || text_[at_] != '>') fail("XML: the tag " + in_quotes(element_) + " has no '>'");
+      if (at_ >= text_.size() || text_[at_] != '>')
+        fail("XML: the tag " + in_quotes(element_) + " has no '>'");
       ++at_;
       open_.push_back(element_);
       any_ = true;
@@ -220,7 +224,8 @@ double XmlReader::number(std::string_view name) const {
   const std::string_view word = raw(name);
   if (word.empty()) fail(in_quotes(element()) + " has no " + in_quotes(name));
   const ParsedReal number = parse_real(word);
-  if (!number.fault.empty()) fail(std::string(name) + ": " + in_quotes(word) + ' ' + std::string(number.fault));
+  if (!number.fault.empty())
+    fail(std::string(name) + ": " + in_quotes(word) + ' ' + std::string(number.fault));
   return number.value;
 }
 
@@ -228,7 +233,8 @@ std::uint64_t XmlReader::count(std::string_view name) const {
   const std::string_view word = raw(name);
   if (word.empty()) fail(in_quotes(element()) + " has no " + in_quotes(name));
   const std::optional<std::int64_t> number = parse_integer(word);
-  if (!number || *number < 0) fail(std::string(name) + ": " + in_quotes(word) + " is not a whole number >= 0");
+  if (!number || *number < 0)
+    fail(std::string(name) + ": " + in_quotes(word) + " is not a whole number >= 0");
   return static_cast<std::uint64_t>(*number);
 }
 

@@ -37,7 +37,8 @@ class XmlReader {
   [[nodiscard]] std::string required_text(std::string_view name) const;
   /// The same as it stands, for numbers; empty if there is none.
   [[nodiscard]] std::string_view raw(std::string_view name) const;
-  [[nodiscard]] double number(std::string_view name) const;  ///< fails if there is none, or none that is finite
+  [[nodiscard]] double number(
+      std::string_view name) const;  ///< fails if there is none, or none that is finite
   [[nodiscard]] std::uint64_t count(std::string_view name) const;  ///< a whole number from 0; likewise
   /// To the end of the element that has just begun.
   void skip();
@@ -62,7 +63,7 @@ class XmlReader {
 
   std::string_view text_;
   const std::string& name_;
-  std::size_t at_ = 0, tag_ = 0;  // places in the text: the next byte, the last tag
+  std::size_t at_ = 0, tag_ = 0;                 // places in the text: the next byte, the last tag
   mutable std::size_t counted_ = 0, lines_ = 1;  // lines up to a place
   std::string_view element_;
   std::vector<Attribute> attributes_;
@@ -72,7 +73,7 @@ class XmlReader {
 
 /// Numbers separated by blanks.
 /// Errors:    as XmlReader::fail(), with the attribute's name, for another count or what is no finite number.
-[[nodiscard]] std::vector<double> numbers_of(const XmlReader& at, std::string_view attribute, std::string_view text,
-                                             std::size_t count);
+[[nodiscard]] std::vector<double> numbers_of(const XmlReader& at, std::string_view attribute,
+                                             std::string_view text, std::size_t count);
 
 }  // namespace snug

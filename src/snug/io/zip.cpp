@@ -47,7 +47,8 @@ std::uint32_t check_sum(std::string_view bytes) {
 bool inflate_all(std::string_view packed, std::size_t size, std::string& bytes) {
   z_stream stream{};
   if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) return false;
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT: zlib only reads there
+  stream.next_in =
+      reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT: zlib only reads there
   std::size_t left_in = packed.size();
   constexpr std::size_t step = std::size_t{1} << 20;
   int status = Z_OK;
@@ -80,7 +81,8 @@ std::string deflate_all(std::string_view bytes) {
     return {};
   }
   std::string packed(bytes.size(), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // NOLINT: zlib only reads there
+  stream.next_in =
+      reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // NOLINT: zlib only reads there
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = reinterpret_cast<Bytef*>(packed.data());
   stream.avail_out = static_cast<uInt>(packed.size());
@@ -111,11 +113,13 @@ void ZipArchive::read_directory() {
     if (end == lowest) fail("no directory at the end of the file: it is truncated, or no archive");
     --end;
   }
-  std::uint64_t count = number_at<std::uint16_t>(bytes_, end + 10), size = number_at<std::uint32_t>(bytes_, end + 12),
+  std::uint64_t count = number_at<std::uint16_t>(bytes_, end + 10),
+                size = number_at<std::uint32_t>(bytes_, end + 12),
                 begin = number_at<std::uint32_t>(bytes_, end + 16);
   if (end >= locator_size && number_at<std::uint32_t>(bytes_, end - locator_size) == locator_mark) {
     const auto at = number_at<std::uint64_t>(bytes_, end - locator_size + 8);
-    if (bytes_.size() < end64_size || at > bytes_.size() - end64_size || number_at<std::uint32_t>(bytes_, at) != end64_mark)
+    if (bytes_.size() < end64_size || at > bytes_.size() - end64_size ||
+        number_at<std::uint32_t>(bytes_, at) != end64_mark)
       fail("the directory of its 64-bit form is not where it is said to be");
     count = number_at<std::uint64_t>(bytes_, at + 32);
     size = number_at<std::uint64_t>(bytes_, at + 40);
@@ -163,10 +167,10 @@ void ZipArchive::read_entry(std::size_t& at) {
 std::string_view ZipArchive::packed(const std::string& path, const Entry& entry) const {
   const bool there = entry.begin <= bytes_.size() && bytes_.size() - entry.begin >= local_size &&
                      number_at<std::uint32_t>(bytes_, entry.begin) == local_mark;
-  const std::uint64_t begin =
-      there ? entry.begin + local_size + number_at<std::uint16_t>(bytes_, entry.begin + 26) +
-                  number_at<std::uint16_t>(bytes_, entry.begin + 28)
-            : 0;
+  const std::uint64_t begin = there ? entry.begin + local_size +
+                                          number_at<std::uint16_t>(bytes_, entry.begin + 26) +
+                                          number_at<std::uint16_t>(bytes_, entry.begin + 28)
+                                    : 0;
   if (!there || begin > bytes_.size() || entry.packed > bytes_.size() - begin)
     fail(in_quotes(path) + " is not where the directory says: the file is truncated or damaged");
   return bytes_.substr(begin, entry.packed);
@@ -179,14 +183,16 @@ std::string ZipArchive::read(const std::string& path) {
   if ((entry.flags & 1u) != 0) fail(in_quotes(path) + " is encrypted: write it without a password");
   const std::string_view source = packed(path, entry);
   if (entry.size > left_)
-    fail(in_quotes(path) + " would unpack to " + std::to_string(entry.size) + " bytes, more than 100 times the file");
+    fail(in_quotes(path) + " would unpack to " + std::to_string(entry.size) +
+         " bytes, more than 100 times the file");
   std::string bytes;
   if (entry.method == stored) {
     if (entry.size != source.size()) fail(in_quotes(path) + " has two sizes: the file is damaged");
     bytes = source;
   } else if (entry.method == deflated) {
 #if SNUG_HAS_ZLIB
-    if (!inflate_all(source, entry.size, bytes)) fail(in_quotes(path) + " does not unpack: the file is damaged");
+    if (!inflate_all(source, entry.size, bytes))
+      fail(in_quotes(path) + " does not unpack: the file is damaged");
 #else
     fail(in_quotes(path) + " is compressed, and this snug was built without zlib: store it uncompressed");
 #endif
@@ -210,7 +216,7 @@ void ZipWriter::add(const std::string& path, std::string_view bytes) {
   if (!fits_) return;
   // The same date for the same bytes: 1 January 1980.
   const auto append_common = [&](std::string& to) {
-    append_binary(to, std::uint16_t{20});  // version needed
+    append_binary(to, std::uint16_t{20});     // version needed
     append_binary(to, std::uint16_t{0x800});  // names are UTF-8
     append_binary(to, method);
     append_binary(to, std::uint16_t{0});
@@ -236,7 +242,8 @@ void ZipWriter::add(const std::string& path, std::string_view bytes) {
 
 std::string ZipWriter::finish(const std::string& name) {
   if (!fits_) {
-    throw InputError(InputProblem::refused, name + ": the mesh takes more than the 4 GiB of an archive: write PLY");
+    throw InputError(InputProblem::refused,
+                     name + ": the mesh takes more than the 4 GiB of an archive: write PLY");
   }
   const auto begin = static_cast<std::uint32_t>(bytes_.size());
   bytes_ += directory_;

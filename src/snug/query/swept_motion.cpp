@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <snug/geometry/rounding.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {
@@ -16,6 +17,26 @@ constexpr double turn_noise = 0x1p-44;
 SweptMotion::SweptMotion(const PieceMotion& motion) {
   const Trajectory::Piece& piece = motion.piece();
   from_ = piece.from;
+  if (!piece.chain.empty()) {
+    tip_ = piece.tip;
+    stretch_ = enlarged(stretch_of(piece));
+    double outward = 0;
+    for (const Trajectory::Piece::JointPath& path : piece.chain) {
+      const double rate = enlarged(std::fabs(path.to - path.from));
+      const Vector3 axis = normalized(path.joint.axis);
+      if (!joints_.empty()) {
+        Joint& before = joints_.back();
+        const Vector3 offset = path.joint.frame.offset();
+        before.offset = enlarged(length(offset));
+        before.across_offset = enlarged(length(cross(last_axis_, offset)) + turn_noise * before.offset);
+        before.slack = path.joint.slides ? std::max(std::fabs(path.from), std::fabs(path.to)) : 0;
+      }
+      joints_.push_back({path.joint.slides ? 0 : rate, path.joint.slides ? rate : 0, outward, 0, 0, 0});
+      if (!path.joint.slides) outward = enlarged(outward + rate);
+      last_axis_ = axis;
+    }
+    return;
+  }
   about_ = piece.about - Point3{};
   rate_ = std::fabs(piece.radians);
   if (piece.radians == 0) {
@@ -31,7 +52,32 @@ SweptMotion::SweptMotion(const PieceMotion& motion) {
 
 double SweptMotion::across(const Vector3& v) const { return length(cross(axis_, v)) + turn_noise; }
 
+SweptMotion::Moved SweptMotion::moved(const OwnBall& ball) const {
+  const Vector3 own = ball.centre - Point3{}, t = tip_.offset();
+  const Vector3 place = tip_.rotate(own) + t;
+  const double noise = turn_noise * (3 * length(own) + length(t)),
+               around = enlarged(ball.radius * (1 + 2 * tip_.defect()) + noise);
+  // Of the ball in the frame that the joint moves: how far from its origin, and from its axis.
+  double from_origin = enlarged(length(place) + around),
+         from_axis = enlarged(length(cross(last_axis_, place)) + around);
+  Moved result;
+  for (std::size_t k = joints_.size(); k-- > 0;) {
+    const Joint& joint = joints_[k];
+    if (k + 1 < joints_.size()) {
+      const double turned = enlarged((from_origin + joint.slack) * stretch_);
+      from_origin = enlarged(joint.offset + turned);
+      from_axis = std::min(from_origin, enlarged(joint.across_offset + turned));
+    }
+    result.speed = enlarged(result.speed + joint.turns * from_axis + joint.slides);
+    result.acceleration =
+        enlarged(result.acceleration + joint.turns * from_axis * (joint.turns + 2 * joint.outward) +
+                 2 * joint.slides * joint.outward);
+  }
+  return {enlarged(result.speed * stretch_), enlarged(result.acceleration * stretch_)};
+}
+
 double SweptMotion::lever(const OwnBall& ball) const {
+  if (is_chain()) return moved(ball).speed;
   if (rate_ == 0) return 0;
   const Vector3 own = ball.centre - Point3{}, turned = from_.rotate(own), t = from_.offset();
   const Vector3 at = rate_ * cross(axis_, turned + (t - about_)) + turning_;
@@ -51,6 +97,7 @@ double SweptHeights::bending(const Vector3& w, double doubt) const {
   double sum = 0;
   for (std::size_t s = 0; s < 2; ++s) {
     const SweptMotion& motion = *motions[s];
+    if (motion.is_chain()) sum += (1 + 0x1p-20) * accelerations[s];
     if (motion.turns()) sum += motion.rate() * ((motion.across(w) + doubt) * levers[s] + 2 * motion.rise());
   }
   return enlarged(sum);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <snug/bvh/wide_node.h>
 #include <snug/query/trajectory.h>
@@ -21,12 +22,19 @@ class SweptMotion {
   SweptMotion() = default;
   explicit SweptMotion(const PieceMotion& motion);
 
+  /// About one axis: not a chain.
   [[nodiscard]] bool turns() const { return rate_ != 0; }
+  [[nodiscard]] bool is_chain() const { return !joints_.empty(); }
   [[nodiscard]] double rate() const { return rate_; }
   /// Of the point `about`.
   [[nodiscard]] const Vector3& velocity() const { return velocity_; }
   /// Length of what of a vector is across the axis, for one that is about 1 long.
   [[nodiscard]] double across(const Vector3& v) const;
+  /// Of a chain: of what each joint moves.
+  struct Moved {
+    double speed = 0, acceleration = 0;
+  };
+  [[nodiscard]] Moved moved(const OwnBall& ball) const;
   /// Velocity of a point of the ball against velocity().
   [[nodiscard]] double lever(const OwnBall& ball) const;
   /// That part of all velocities that is along the axis and not in velocity(), and the same of accelerations.
@@ -41,6 +49,17 @@ class SweptMotion {
   double rate_ = 0;
   Vector3 about_, velocity_, turning_;  // about_ as a vector
   double rise_ = 0;
+  struct Joint {
+    double turns, slides;  // in one unit of time
+    double outward;        // of the joints before: what they turn by
+    double offset,
+        across_offset;  // of the next joint's frame, or 0: from the origin of this one, and from its axis
+    double slack;       // what a slide of the next one adds
+  };
+  std::vector<Joint> joints_;
+  Motion tip_;
+  Vector3 last_axis_;
+  double stretch_ = 1;
 };
 
 /// Upper bound of |h''(s)| for h(s) = w(s).(y(s) - x(s)) with points x of one surface and y of the other, where
@@ -48,9 +67,9 @@ class SweptMotion {
 struct SweptHeights {
   std::array<const SweptMotion*, 2> motions;
   std::array<OwnBall, 2> balls;
-  std::array<Point3, 2> centres;  ///< of the balls, placed in the middle of the step
-  std::array<double, 2> levers;
-  double time, half_step;  ///< the middle of the step, and half of its length
+  std::array<Point3, 2> centres;                  ///< of the balls, placed in the middle of the step
+  std::array<double, 2> levers, accelerations{};  ///< these of chains
+  double time, half_step;                         ///< the middle of the step, and half of its length
 
   /// w stays: this is its value, about 1 long, up to `doubt`.
   [[nodiscard]] double bending(const Vector3& w, double doubt) const;

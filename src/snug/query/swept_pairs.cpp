@@ -170,6 +170,8 @@ SweptPairs::Pair SweptPairs::pair_of(const Nodes& nodes, const Step& step) {
     pair.heights.balls[s] = {back.apply(box.centre), back.apply(radius_of(box)) + step.middle.place_doubt};
     pair.heights.centres[s] = world_.inverse().apply(pair.places[s]);
     pair.heights.levers[s] = motions_[s].lever(pair.heights.balls[s]);
+    if (motions_[s].is_chain())
+      pair.heights.accelerations[s] = motions_[s].moved(pair.heights.balls[s]).acceleration;
   }
   pair.heights.time = step.middle.time;
   pair.heights.half_step = step.half();
@@ -221,9 +223,12 @@ bool SweptPairs::apart_along(const Step& step, Pair& pair, const Vector3& direct
     if (!(gap(step.middle, pair, w) > 0)) return false;
     pair.shown = true;
   }
-  if (of != neither) return kept_apart(step, pair, w, motions_[of].turns() ? of : neither);
-  return kept_apart(step, pair, w, neither) || (motions_[0].turns() && kept_apart(step, pair, w, 0)) ||
-         (motions_[1].turns() && kept_apart(step, pair, w, 1));
+  // Nothing is derived for a direction that turns while one surface is moved by a chain.
+  const bool chains = motions_[0].is_chain() || motions_[1].is_chain();
+  const auto turns = [&](std::size_t side) { return motions_[side].turns() && !chains; };
+  if (of != neither) return kept_apart(step, pair, w, turns(of) ? of : neither);
+  return kept_apart(step, pair, w, neither) || (turns(0) && kept_apart(step, pair, w, 0)) ||
+         (turns(1) && kept_apart(step, pair, w, 1));
 }
 
 bool SweptPairs::apart(const Step& step, Pair& pair) {

@@ -324,6 +324,9 @@ class FirstContactSearch {
       start_.outside = start_.apart;
     }
     take(look, end);
+    // Where nothing moves there is no later time to look for a crossing at.
+    const bool may_touch = end == 0 && options_.margin == 0 && upper_.crossing > 0 && upper_.within == 0;
+    if (may_touch && options_.prove_contact && probe(0)) meet(0);
     return upper_.crossing == 0 || end == 0;
   }
 

@@ -37,6 +37,92 @@ double largest(Interval a) { return std::max(std::fabs(a.lower), std::fabs(a.upp
 IntervalVector rotated(const Motion& m, const IntervalVector& v) {
   return {dot(intervals(m.row(0)), v), dot(intervals(m.row(1)), v), dot(intervals(m.row(2)), v)};
 }
+IntervalVector unit_of(const Vector3& axis) {
+  const IntervalVector given = intervals(axis);
+  const Interval size = square_root(dot(given, given));
+  return {given[0] / size, given[1] / size, given[2] / size};
+}
+// By an angle about a unit vector; `rest` is 1 - cosine, with its own digits.
+struct Turn {
+  Interval sine{0}, cosine{1}, rest{0};
+  explicit Turn(Interval angle) {
+    if (angle == Interval(0)) return;
+    const SineCosine of_angle = sine_cosine(angle);
+    const Interval half = sine_cosine(angle / Interval(2)).sine;
+    sine = of_angle.sine;
+    cosine = of_angle.cosine;
+    rest = Interval(2) * (half * half);
+  }
+  [[nodiscard]] IntervalVector operator()(const IntervalVector& n, const IntervalVector& v) const {
+    if (sine == Interval(0) && cosine == Interval(1)) return v;
+    return cosine * v + sine * cross(n, v) + (rest * dot(n, v)) * n;
+  }
+};
+// Where a joint is at a time.
+Interval position(const Trajectory::Piece::JointPath& path, double s) {
+  if (s == 0 || path.from == path.to) return path.from;
+  if (s == 1) return path.to;
+  return Interval(path.from) + Interval(s) * (Interval(path.to) - Interval(path.from));
+}
+double rate_of(const Trajectory::Piece::JointPath& path) {
+  return largest(Interval(path.to) - Interval(path.from));
+}
+double farthest_position(const Trajectory::Piece::JointPath& path) {
+  return std::max(std::fabs(path.from), std::fabs(path.to));
+}
+
+// Upper bound of a convex function over a surface: at a corner of its box, or by its ball and what it changes by with the
+// distance of points.
+template <class Function>
+double farthest(const SurfaceBvh& model, const Function& of, double change) {
+  const Ball& ball = model.ball();
+  const Obb& box = model.box();
+  const double by_ball = enlarged(of(intervals(ball.centre - Point3{})) + change * ball.radius);
+  // Axes are orthonormal up to some roundings, which moves a corner by less than this.
+  const double more = 0x1p-40 * (box.half.x + box.half.y + box.half.z);
+  double by_box = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    IntervalVector point = intervals(box.centre - Point3{});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double half = enlarged(box.half[k] + more);
+      point = point + Interval((corner >> k & 1u) != 0 ? half : -half) * intervals(box.axes[k]);
+    }
+    by_box = std::max(by_box, of(point));
+  }
+  return std::min(by_ball, std::isfinite(by_box) ? by_box : INFINITY);
+}
+
+// The pose of a chain in double precision.
+Motion pose_of_chain(std::span<const ChainJoint> chain, const Motion& tip,
+                     std::span<const double> positions) {
+  Motion pose;
+  for (std::size_t k = 0; k < chain.size(); ++k) {
+    const ChainJoint& joint = chain[k];
+    pose = pose * joint.frame;
+    if (positions[k] == 0) continue;
+    const Vector3 axis = PowerOfTwo::normalising(max_abs(joint.axis)).apply(joint.axis);
+    pose = pose * (joint.slides ? Motion::translation(positions[k] * normalized(axis))
+                                : Motion::rotation(axis, positions[k]));
+  }
+  return pose * tip;
+}
+
+void require_chain(std::span<const ChainJoint> chain, std::span<const std::vector<double>> positions) {
+  require_value(!positions.empty(), "trajectory: no positions of the joints; give one list or more");
+  for (const ChainJoint& joint : chain) {
+    require_value(is_finite(joint.axis) && joint.axis != Vector3{},
+                  "trajectory: the axis of a joint has no length or is not finite; give its direction");
+  }
+  for (const std::vector<double>& list : positions) {
+    require_value(
+        list.size() == chain.size(),
+        "trajectory: positions are not as many as the chain has joints; give one of each in every list");
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      require_value(std::fabs(list[k]) < (chain[k].slides ? 0x1p1000 : 0x1p30),
+                    "trajectory: the position of a joint is not finite or more than 1e8 turns; give less");
+    }
+  }
+}
 
 [[noreturn]] void refuse_motion() {
   throw InputError(
@@ -102,6 +188,12 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
 
 }  // namespace
 
+double stretch_of(const Trajectory::Piece& chain) {
+  double stretch = 1 + 2 * chain.tip.defect();
+  for (const Trajectory::Piece::JointPath& path : chain.chain) stretch *= 1 + 2 * path.joint.frame.defect();
+  return stretch;
+}
+
 double length_up(const IntervalVector& a) {
   Vector3 most{largest(a[0]), largest(a[1]), largest(a[2])};
   const double size = max_abs(most);
@@ -149,6 +241,25 @@ Trajectory Trajectory::steady(const Motion& from, const SteadyMotion& motion) {
   return result;
 }
 
+Trajectory Trajectory::joints(std::span<const ChainJoint> chain, const Motion& tip,
+                              std::span<const std::vector<double>> positions) {
+  require_chain(chain, positions);
+  std::vector<Motion> poses;
+  for (const std::vector<double>& list : positions) poses.push_back(pose_of_chain(chain, tip, list));
+  Trajectory result(poses[0]);
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    Piece piece{.from = poses[i], .to = poses[i + 1], .ends = true};
+    piece.tip = tip;
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      ChainJoint joint = chain[k];
+      joint.axis = PowerOfTwo::normalising(max_abs(joint.axis)).apply(joint.axis);
+      piece.chain.push_back({joint, positions[i][k], positions[i + 1][k]});
+    }
+    result.pieces_.push_back(std::move(piece));
+  }
+  return result;
+}
+
 Motion Trajectory::at(double time) const {
   if (pieces_.empty()) return start_;
   require_value(time >= 0 && time <= duration(),
@@ -172,26 +283,43 @@ PieceMotion::PieceMotion(const Motion& stays) : stays_(true), axis_{0, 0, 1} {
 }
 
 PieceMotion::PieceMotion(const Trajectory::Piece& piece) : piece_(piece) {
-  const IntervalVector given = intervals(piece.axis);
-  const Interval size = square_root(dot(given, given));
-  axis_ = {given[0] / size, given[1] / size, given[2] / size};
+  axis_ = unit_of(piece.axis);
+  for (const Trajectory::Piece::JointPath& path : piece.chain) axes_.push_back(unit_of(path.joint.axis));
   if (!piece.ends) return;
-  closing_ = screwed(1);
+  const bool is_chain = !piece.chain.empty();
+  closing_ = is_chain ? chained(1) : screwed(1);
   for (std::size_t k = 0; k < 12; ++k) closing_[k] = Interval(piece.to.numbers()[k]) - closing_[k];
+  if (!is_chain) return;
+  opening_ = chained(0);
+  for (std::size_t k = 0; k < 12; ++k) opening_[k] = Interval(piece.from.numbers()[k]) - opening_[k];
+}
+
+PieceMotion::Intervals PieceMotion::chained(double s) const {
+  std::array<IntervalVector, 4> columns;  // images of the axes, and of the origin
+  for (std::size_t j = 0; j < 3; ++j)
+    columns[j] = {piece_.tip.row(0)[j], piece_.tip.row(1)[j], piece_.tip.row(2)[j]};
+  columns[3] = intervals(piece_.tip.offset());
+  for (std::size_t k = piece_.chain.size(); k-- > 0;) {
+    const Trajectory::Piece::JointPath& path = piece_.chain[k];
+    const Interval at = position(path, s);
+    const Turn turn(path.joint.slides ? Interval(0) : at);
+    if (path.joint.slides) columns[3] = columns[3] + at * axes_[k];
+    for (IntervalVector& column : columns) column = rotated(path.joint.frame, turn(axes_[k], column));
+    columns[3] = columns[3] + intervals(path.joint.frame.offset());
+  }
+  Intervals result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) result[4 * i + j] = columns[j][i];
+  }
+  return result;
 }
 
 PieceMotion::Intervals PieceMotion::screwed(double s) const {
   const Motion& from = piece_.from;
-  const Interval angle = Interval(s) * Interval(piece_.radians);
-  const SineCosine of_angle = piece_.radians == 0 ? SineCosine{0, 1} : sine_cosine(angle);
-  const Interval &sine = of_angle.sine, &cosine = of_angle.cosine;
-  const Interval half_sine = sine_cosine(angle / Interval(2)).sine;
-  const Interval rest = Interval(2) * (half_sine * half_sine);  // 1 - cosine, with its own digits
+  const Turn turn(piece_.radians == 0 ? Interval(0) : Interval(s) * Interval(piece_.radians));
+  const Interval &sine = turn.sine, &rest = turn.rest;
   const IntervalVector& n = axis_;
-  const auto turned = [&](const IntervalVector& v) {
-    if (piece_.radians == 0) return v;
-    return cosine * v + sine * cross(n, v) + (rest * dot(n, v)) * n;
-  };
+  const auto turned = [&](const IntervalVector& v) { return turn(n, v); };
   Intervals result;
   for (std::size_t j = 0; j < 3; ++j) {
     const IntervalVector column = turned({from.row(0)[j], from.row(1)[j], from.row(2)[j]});
@@ -215,11 +343,13 @@ PieceMotion::Intervals PieceMotion::screwed(double s) const {
 BoundedPose PieceMotion::at(double s) const {
   if (stays_ || s == 0) return {piece_.from};
   if (piece_.ends && s == 1) return {piece_.to};
-  Intervals exact = screwed(s);
+  const bool is_chain = !piece_.chain.empty();
+  Intervals exact = is_chain ? chained(s) : screwed(s);
   Numbers numbers;
   BoundedPose result;
   for (std::size_t k = 0; k < 12; ++k) {
     if (piece_.ends) exact[k] = exact[k] + Interval(s) * closing_[k];
+    if (is_chain) exact[k] = exact[k] + (Interval(1) - Interval(s)) * opening_[k];
     numbers[k] = middle(exact[k]);
     if (!std::isfinite(numbers[k])) refuse_motion();
   }
@@ -244,44 +374,67 @@ PieceMotion::IntervalVector PieceMotion::lever_at(const IntervalVector& point) c
 // The largest of these over the surface: at a corner of its box, or by its ball.
 double PieceMotion::lever(const SurfaceBvh& model) const {
   if (piece_.radians == 0) return length_up(intervals(piece_.turning));
-  const Ball& ball = model.ball();
-  const Obb& box = model.box();
   // Growth of R beyond 1: 2 defects.
-  double by_ball = length_up(lever_at(intervals(ball.centre - Point3{})));
-  by_ball = enlarged(by_ball + std::fabs(piece_.radians) * ball.radius * (1 + 2 * piece_.from.defect()));
-  // Axes are orthonormal up to some roundings, which moves a corner by less than this.
-  const double more = 0x1p-40 * (box.half.x + box.half.y + box.half.z);
-  double by_box = 0;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    IntervalVector point = intervals(box.centre - Point3{});
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double half = enlarged(box.half[k] + more);
-      point = point + Interval((corner >> k & 1u) != 0 ? half : -half) * intervals(box.axes[k]);
-    }
-    by_box = std::max(by_box, length_up(lever_at(point)));
+  return farthest(
+      model, [this](const IntervalVector& point) { return length_up(lever_at(point)); },
+      std::fabs(piece_.radians) * (1 + 2 * piece_.from.defect()));
+}
+
+// Joint by joint, from the last one: its rate times how far points are from its axis.
+double PieceMotion::chain_speed(const SurfaceBvh& model) const {
+  const auto& chain = piece_.chain;
+  const double growth = enlarged(1 + 2 * piece_.tip.defect());
+  const auto placed = [this](const IntervalVector& point) {
+    return rotated(piece_.tip, point) + intervals(piece_.tip.offset());
+  };
+  // Of the points in the frame that joint k moves: how far from its origin, and from the axis.
+  double from_origin = farthest(
+      model, [&](const IntervalVector& point) { return length_up(placed(point)); }, growth);
+  double from_axis = farthest(
+      model, [&](const IntervalVector& point) { return length_up(cross(axes_.back(), placed(point))); },
+      growth);
+  double sum = 0;
+  for (std::size_t k = chain.size(); k-- > 0;) {
+    const Trajectory::Piece::JointPath& path = chain[k];
+    sum = enlarged(sum + (path.joint.slides ? rate_of(path) : rate_of(path) * from_axis));
+    if (k == 0) break;
+    if (path.joint.slides) from_origin = enlarged(from_origin + farthest_position(path));
+    const double turned = enlarged((1 + 2 * path.joint.frame.defect()) * from_origin);
+    const IntervalVector offset = intervals(path.joint.frame.offset());
+    from_origin = enlarged(length_up(offset) + turned);
+    from_axis = std::min(from_origin, enlarged(length_up(cross(axes_[k - 1], offset)) + turned));
   }
-  return std::min(by_ball, std::isfinite(by_box) ? by_box : INFINITY);
+  return enlarged(enlarged(stretch_of(piece_)) * sum);
 }
 
 double PieceMotion::closing_growth() const {
   double matrix = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) matrix += largest(closing_[4 * i + j]);
+    for (std::size_t j = 0; j < 3; ++j) matrix += largest(closing_[4 * i + j]) + largest(opening_[4 * i + j]);
   }
   return enlarged(matrix);
 }
 
-double PieceMotion::growth() const { return enlarged(1 + 2 * piece_.from.defect() + closing_growth()); }
+double PieceMotion::growth() const {
+  const double own = piece_.chain.empty() ? 1 + 2 * piece_.from.defect() : enlarged(stretch_of(piece_));
+  return enlarged(own + closing_growth());
+}
 
 double PieceMotion::closing_speed(const SurfaceBvh& model) const {
   if (!piece_.ends) return 0;
   const Ball& ball = model.ball();
   return enlarged(closing_growth() * (length_up(intervals(ball.centre - Point3{})) + ball.radius) +
-                  length_up({closing_[3], closing_[7], closing_[11]}));
+                  length_up({closing_[3], closing_[7], closing_[11]}) +
+                  length_up({opening_[3], opening_[7], opening_[11]}));
 }
 
 double PieceMotion::speed(const SurfaceBvh& model) const {
   if (stays_) return 0;
+  if (!piece_.chain.empty()) {
+    const double result = enlarged(chain_speed(model) + closing_speed(model));
+    if (!std::isfinite(result)) refuse_motion();
+    return result;
+  }
   const IntervalVector velocity = intervals(piece_.velocity);
   const Interval along = dot(axis_, velocity);
   const double rise = enlarged(largest(along) + largest(dot(axis_, intervals(piece_.turning)))),

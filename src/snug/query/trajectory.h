@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <snug/geometry/interval.h>
 #include <snug/geometry/motion.h>
@@ -11,6 +12,9 @@ namespace snug {
 
 /// Upper bound of the length of every vector in three intervals.
 [[nodiscard]] double length_up(const std::array<Interval, 3>& vector);
+
+/// What the frames of a chain may stretch lengths by, up to some roundings.
+[[nodiscard]] double stretch_of(const Trajectory::Piece& chain);
 
 /// A pose in double precision, and upper bounds of what its numbers differ by from the one that is meant.
 struct BoundedPose {
@@ -36,7 +40,7 @@ class PieceMotion {
   /// Upper bound of the velocity of any point of the surface, in mesh units for one unit of time.
   [[nodiscard]] double speed(const SurfaceBvh& model) const;
   /// Does it only translate?
-  [[nodiscard]] bool straight() const { return piece_.radians == 0; }
+  [[nodiscard]] bool straight() const { return piece_.radians == 0 && piece_.chain.empty(); }
   /// And without what a given end may turn it by?
   [[nodiscard]] bool keeps_rotation() const { return straight() && !piece_.ends; }
   /// Upper bound of what its poses may stretch lengths by.
@@ -48,7 +52,8 @@ class PieceMotion {
   [[nodiscard]] const Trajectory::Piece& piece() const { return piece_; }
   /// The unit vector of the axis, up to a few roundings.
   [[nodiscard]] Vector3 axis() const { return {middle(axis_[0]), middle(axis_[1]), middle(axis_[2])}; }
-  /// Upper bounds of what `to - S(1)` makes of a vector of length 1, and of how far it takes a point of a surface.
+  /// Upper bounds of what `to - S(1)`, with `from - C(0)` for a chain, makes of a vector of length 1, and of how far it takes
+  /// a point of a surface.
   [[nodiscard]] double closing_growth() const;
   [[nodiscard]] double closing_speed(const SurfaceBvh& model) const;
 
@@ -56,13 +61,16 @@ class PieceMotion {
   using Intervals = std::array<Interval, 12>;
   using IntervalVector = std::array<Interval, 3>;
   [[nodiscard]] Intervals screwed(double s) const;
+  [[nodiscard]] Intervals chained(double s) const;
   [[nodiscard]] double lever(const SurfaceBvh& model) const;
+  [[nodiscard]] double chain_speed(const SurfaceBvh& model) const;
   [[nodiscard]] IntervalVector lever_at(const IntervalVector& point) const;
 
   Trajectory::Piece piece_;
   bool stays_ = false;
-  IntervalVector axis_;  // of length 1
-  Intervals closing_{};  // to - S(1)
+  IntervalVector axis_;               // of length 1
+  std::vector<IntervalVector> axes_;  // of a chain's joints, likewise
+  Intervals closing_{}, opening_{};   // to - S(1); from - C(0)
 };
 
 }  // namespace snug

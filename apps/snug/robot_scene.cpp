@@ -1,0 +1,313 @@
+#include <snug/robot.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <fmt/core.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/parallel.h>
+#include <support/read_file.h>
+
+#include "answer_writer.h"
+#include "common.h"
+#include "progress_bar.h"
+#include "witness.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string robot, joints, path, srdf, root, tolerance = "0.1%", primitive_error = "0.2%";
+  std::vector<std::string> packages;
+  bool visual = false, joined = false, exit_code = false;
+};
+
+using Given = std::vector<std::pair<std::string, double>>;
+
+std::vector<std::string> words_of(const std::string& text) {
+  constexpr const char* blanks = " ,\t\r";
+  std::vector<std::string> words;
+  for (auto begin = text.find_first_not_of(blanks); begin != std::string::npos;) {
+    const auto end = std::min(text.find_first_of(blanks, begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(blanks, end);
+  }
+  return words;
+}
+
+// "0.5", or "30deg".
+double position_of(std::string word, const std::string& where) {
+  const bool degrees = word.ends_with("deg");
+  if (degrees) word.resize(word.size() - 3);
+  const ParsedReal number = parse_real(word);
+  if (!number.fault.empty()) throw UsageError(fmt::format("{}: '{}' {}", where, word, number.fault));
+  return degrees ? number.value * (std::numbers::pi / 180) : number.value;
+}
+
+Given given_positions(const std::string& text) {
+  Given given;
+  for (const std::string& word : words_of(text)) {
+    const auto equals = word.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw UsageError("--joints: '" + word + "' is not NAME=POSITION, as in \"elbow=0.5 wrist=30deg\"");
+    given.emplace_back(word.substr(0, equals), position_of(word.substr(equals + 1), "--joints"));
+  }
+  return given;
+}
+
+// Names of joints in the first line, a position of each in every other one.
+std::vector<std::vector<double>> read_path(const Robot& robot, const Options& options) {
+  std::vector<std::vector<double>> positions;
+  std::vector<std::string> names;
+  const std::string bytes = read_file(options.path);
+  const std::string_view text = plain_text(bytes, input_name(options.path));
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::vector<std::string> words = words_of(std::string(text.substr(begin, end - begin)));
+    begin = end + 1;
+    ++number;
+    if (words.empty() || words[0].starts_with('#')) continue;
+    if (names.empty()) {
+      names = words;
+      continue;
+    }
+    const std::string where = fmt::format("{}:{}", input_name(options.path), number);
+    if (words.size() != names.size()) {
+      throw InputError(InputProblem::unreadable,
+                       fmt::format("{}: {} positions for {} joints", where, words.size(), names.size()));
+    }
+    Given given = given_positions(options.joints);
+    std::erase_if(given, [&](const auto& own) { return std::ranges::find(names, own.first) != names.end(); });
+    try {
+      for (std::size_t i = 0; i < names.size(); ++i)
+        given.emplace_back(names[i], position_of(words[i], where));
+    } catch (const UsageError& error) {
+      throw InputError(InputProblem::unreadable, error.what());
+    }
+    naming(where, [&] { positions.push_back(joint_positions(robot, given)); });
+  }
+  if (positions.size() < 2)
+    throw InputError(
+        InputProblem::unreadable,
+        input_name(options.path) + ": give a line of joints' names, and two or more lines of positions");
+  return positions;
+}
+
+Robot load_robot(const Options& options) {
+  RobotOptions how{.visual = options.visual, .root = options.root, .notes = notes_for(options)};
+  for (const std::string& package : options.packages) {
+    const auto equals = package.find('=');
+    const bool named = equals != std::string::npos;
+    how.packages[named ? package.substr(0, equals) : ""] = named ? package.substr(equals + 1) : package;
+  }
+  const Length error = parse_length(options.primitive_error, "--primitive-error");
+  if (!error.percent || error.number < 1e-3 || error.number > 50)
+    throw UsageError("--primitive-error: give percent of the radius, from 0.001% to 50%");
+  how.primitive_error = error.number / 100;
+  Robot robot = read_robot(options.robot, how);
+  if (!options.srdf.empty()) allow_pairs(robot, read_file(options.srdf), options.srdf);
+  return robot;
+}
+
+// Two shapes of two links, and what was found.
+struct ShapePair {
+  PartPair links;
+  std::array<std::size_t, 2> shapes;
+  TimeOfContact answer{};
+};
+
+std::string shape_name(const Robot& robot, std::uint32_t link, std::size_t shape) {
+  const Robot::Link& own = robot.links[link];
+  return own.shapes.size() == 1 ? own.name : fmt::format("{}#{}", own.name, shape + 1);
+}
+
+class RobotRun {
+ public:
+  RobotRun(const Options& options) : options_(options), robot_(load_robot(options)) {
+    tolerance_ = parse_length(options.tolerance, "--tolerance", true);
+    if (options.path.empty()) {
+      positions_.push_back(joint_positions(robot_, given_positions(options.joints)));
+    } else {
+      positions_ = read_path(robot_, options);
+    }
+    for (std::size_t m = 0; m < robot_.meshes.size(); ++m) {
+      naming(robot_.mesh_names[m], [&] {
+        surfaces_.push_back(make_surface(robot_.meshes[m], robot_.mesh_names[m], options, options.scheme));
+      });
+    }
+    for (const PartPair& links : pairs_to_check(robot_, options.joined)) {
+      for (std::size_t i = 0; i < robot_.links[links.a].shapes.size(); ++i) {
+        for (std::size_t k = 0; k < robot_.links[links.b].shapes.size(); ++k)
+          pairs_.push_back({links, {i, k}});
+      }
+    }
+  }
+
+  ExitStatus run() {
+    Report report("scene", options_);
+    write_head(report);
+    ask_all();
+    std::array<std::size_t, 4> counts{};
+    bool complete = true;
+    for (const ShapePair& pair : pairs_) {
+      ++counts[static_cast<std::size_t>(pair.answer.verdict)];
+      complete = complete && pair.answer.outcome == Outcome::complete;
+      if (report.json()) write_json(report.write(), pair);
+      if (pair.answer.verdict != Verdict::separated) report.text(row(pair));
+    }
+    if (report.json()) {
+      report.write().end_array();
+      for (std::size_t i = 0; i < counts.size(); ++i)
+        report.write().field(name_of(static_cast<Verdict>(i)), counts[i]);
+    }
+    std::string sentence = fmt::format("{} pairs of shapes", pairs_.size());
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] > 0) sentence += fmt::format(", {} {}", counts[i], name_of(static_cast<Verdict>(i)));
+    }
+    report.text(sentence);
+    const ExitStatus status = report.finish(complete);
+    if (!options_.exit_code) return status;
+    const auto some = [&](Verdict verdict) { return counts[static_cast<std::size_t>(verdict)] > 0; };
+    return some(Verdict::intersecting) ? ExitStatus::intersecting
+           : some(Verdict::undecided)  ? ExitStatus::undecided
+           : some(Verdict::within)     ? ExitStatus::within
+                                       : ExitStatus::answered;
+  }
+
+ private:
+  [[nodiscard]] std::pair<std::uint32_t, Motion> shape(const ShapePair& pair, std::size_t side) const {
+    const std::uint32_t link = side == 0 ? pair.links.a : pair.links.b;
+    return {link, robot_.links[link].shapes[pair.shapes[side]].pose};
+  }
+  [[nodiscard]] const Surface& surface(const ShapePair& pair, std::size_t side) const {
+    const std::uint32_t link = side == 0 ? pair.links.a : pair.links.b;
+    return surfaces_[robot_.links[link].shapes[pair.shapes[side]].mesh];
+  }
+
+  [[nodiscard]] double outward(const ShapePair& pair, std::size_t side) const {
+    const std::uint32_t link = side == 0 ? pair.links.a : pair.links.b;
+    return robot_.outward[robot_.links[link].shapes[pair.shapes[side]].mesh];
+  }
+
+  void ask_all() {
+    ProgressBar bar("moving", options_.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    for (std::size_t m = 0; m < surfaces_.size(); ++m)
+      naming(robot_.mesh_names[m], [&] { surfaces_[m].prepare({.monitor = &monitor}); });
+    std::atomic<std::size_t> done{0};
+    parallel_for(pairs_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        ShapePair& pair = pairs_[i];
+        const auto [a, b] = link_motions(robot_, shape(pair, 0), shape(pair, 1), positions_);
+        TimeOfContactOptions wanted;
+        const double size = std::max(surface(pair, 0).size(), surface(pair, 1).size());
+        wanted.tolerance = tolerance_.in_mesh_units(size, 1.0);
+        WorkMonitor quiet;
+        quiet.stop = monitor.stop;
+        pair.answer = time_of_contact(surface(pair, 0), a, surface(pair, 1), b, wanted,
+                                      {.threads = 1, .monitor = &quiet, .max_splits = options_.max_splits});
+        // A mesh that goes beyond its shape meets others before the shape does: that is nearness.
+        const bool goes_beyond = outward(pair, 0) > 0 || outward(pair, 1) > 0;
+        if (pair.answer.verdict == Verdict::intersecting && goes_beyond)
+          pair.answer.verdict = Verdict::within;
+        monitor.report(static_cast<double>(++done) / static_cast<double>(pairs_.size()));
+      }
+    });
+  }
+
+  void write_head(Report& report) const {
+    const std::size_t moving = static_cast<std::size_t>(std::ranges::count_if(
+        robot_.joints, [](const Robot::Joint& joint) { return !joint.fixed && !joint.mimic; }));
+    report.text(fmt::format("robot {}: {} links, {} joints that move, {} meshes", robot_.name,
+                            robot_.links.size(), moving, robot_.meshes.size()));
+    report.text(options_.path.empty() ? "# a b verdict" : "# a b verdict no-contact-before contact-by");
+    if (!report.json()) return;
+    JsonWriter& json = report.write();
+    json.field("robot", robot_.name).field("links", robot_.links.size());
+    json.key("joints").begin_array();
+    for (const Robot::Joint& joint : robot_.joints) {
+      if (!joint.fixed) json.value(joint.name);
+    }
+    json.end_array().field("duration", static_cast<double>(positions_.size() - 1));
+    double outward = 0;
+    for (const double own : robot_.outward) outward = std::max(outward, own);
+    json.field("outward", outward).key("results").begin_array();
+  }
+
+  void write_json(JsonWriter& json, const ShapePair& pair) const {
+    const auto [a, b] = link_motions(robot_, shape(pair, 0), shape(pair, 1), positions_);
+    const TimeOfContact& answer = pair.answer;
+    const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
+    const auto pose = [&](const Trajectory& motion) { return motion.at(motion.duration() > 0 ? time : 0); };
+    json.begin_object().field("a", shape_name(robot_, pair.links.a, pair.shapes[0]));
+    json.field("b", shape_name(robot_, pair.links.b, pair.shapes[1]));
+    json.field("frame", robot_.links[common_link(robot_, pair.links.a, pair.links.b)].name);
+    const Sides sides{surface(pair, 0).at(pose(a)), surface(pair, 1).at(pose(b))};
+    write_fields(json, answer, sides);
+    json.end_object();
+  }
+
+  [[nodiscard]] std::string row(const ShapePair& pair) const {
+    const TimeOfContact& answer = pair.answer;
+    std::string text = fmt::format("{} {} {}", shape_name(robot_, pair.links.a, pair.shapes[0]),
+                                   shape_name(robot_, pair.links.b, pair.shapes[1]), name_of(answer.verdict));
+    if (options_.path.empty()) return text;
+    return text + fmt::format(" {} {}", text_at_most(answer.time.lower),
+                              answer.time.upper < INFINITY ? text_at_most(answer.time.upper, true) : "-");
+  }
+
+  const Options& options_;
+  Robot robot_;
+  Length tolerance_;
+  std::vector<std::vector<double>> positions_;
+  std::vector<Surface> surfaces_;  // one a mesh
+  std::vector<ShapePair> pairs_;
+};
+
+}  // namespace
+
+Command robot_command() {
+  auto options = std::make_shared<Options>();
+  options->max_splits = default_splits::time_of_contact;
+  OptionList list;
+  list.add(Group::own, "ROBOT", &options->robot, "Robot (URDF)");
+  list.add(Group::own, "--joints \"NAME=POSITION ...\"", &options->joints,
+           "Positions of joints in radians and metres, or as in 30deg; others are at 0, or at the limit "
+           "nearest to it");
+  list.add(Group::own, "--path FILE", &options->path,
+           "First contact along a path: the first line names joints, each other one has their positions at "
+           "times 0, 1, 2 ...; "
+           "between them all joints go at constant speeds");
+  list.add(Group::own, "--srdf FILE", &options->srdf,
+           "Pairs of links that may touch: disable_collisions of an SRDF file");
+  list.add(Group::own, "--joined", &options->joined, "Also ask pairs of links that a joint joins");
+  list.add(Group::own, "--visual", &options->visual,
+           "Take the visual shapes instead of the collision shapes");
+  list.add(Group::own, "--package NAME=FOLDER", &options->packages,
+           "Where package://NAME/ is; without NAME= a folder that holds all packages");
+  list.add(Group::own, "--root FOLDER", &options->root,
+           "Folder that paths of meshes may not leave; default: that of the robot's file");
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Shapes this close may be reported as within; metres, percent of the larger mesh, or with a unit "
+           "(0.1mm)");
+  list.add(Group::own, "--primitive-error PERCENT", &options->primitive_error,
+           "How far meshes of cylinders and spheres may go beyond them, of the radius");
+  list.add(Group::own, "--exit-code", &options->exit_code,
+           "Exit with 0 if all pairs are separated, 10 within, 11 intersecting, 12 undecided");
+  add_common_options(list, *options);
+  list.add(Group::effort, "--max-splits N", &options->max_splits, "Budget of each pair in each unit of time");
+  return {"scene",
+          Topic::two_surfaces,
+          "Prove which links of a robot (URDF) meet, at a position or along a path of its joints",
+          {"snug scene arm.urdf --joints \"elbow=30deg\"",
+           "snug scene arm.urdf --path moves.txt --srdf arm.srdf --json"},
+          std::move(list),
+          [options] { return RobotRun(*options).run(); }};
+}
+
+}  // namespace snug::command

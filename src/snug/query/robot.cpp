@@ -1,0 +1,142 @@
+#include <snug/robot.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <support/contract.h>
+#include <support/error.h>
+#include <support/number.h>
+
+namespace snug {
+namespace {
+
+/// The link that all links hang on which do not move against this one.
+std::vector<std::uint32_t> rigid_groups(const Robot& robot) {
+  std::vector<std::uint32_t> group(robot.links.size());
+  for (std::uint32_t l = 0; l < robot.links.size(); ++l) {
+    const auto& joint = robot.links[l].joint;
+    group[l] = joint && robot.joints[*joint].fixed ? group[robot.joints[*joint].parent] : l;
+  }
+  return group;
+}
+
+std::uint32_t above(const Robot& robot, std::uint32_t link) {
+  return robot.joints[*robot.links[link].joint].parent;
+}
+
+/// Joints from a link that is above another one down to that.
+std::vector<std::uint32_t> joints_between(const Robot& robot, std::uint32_t from, std::uint32_t to) {
+  std::vector<std::uint32_t> joints;
+  for (; to != from; to = above(robot, to)) joints.push_back(*robot.links[to].joint);
+  std::ranges::reverse(joints);
+  return joints;
+}
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw InputError(InputProblem::value, message);
+}
+
+}  // namespace
+
+std::vector<double> joint_positions(const Robot& robot,
+                                    std::span<const std::pair<std::string, double>> given) {
+  std::vector<double> positions(robot.joints.size(), 0);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const Robot::Joint& joint = robot.joints[j];
+    if (!joint.fixed) positions[j] = std::clamp(0.0, joint.lower, joint.upper);
+  }
+  std::set<std::string> met;
+  for (const auto& [name, position] : given) {
+    const auto found = std::ranges::find(robot.joints, name, &Robot::Joint::name);
+    require(found != robot.joints.end(), "robot: no joint is called '" + name + "'");
+    const std::string which = "robot: joint '" + name + "' ";
+    require(met.insert(name).second, which + "has two positions");
+    require(!found->fixed, which + "is fixed");
+    require(!found->mimic, which + "follows another joint: give the position of that one");
+    require(std::isfinite(position), which + "has a position that is not finite");
+    if (!(position >= found->lower && position <= found->upper)) {
+      std::string text = which + "is at ";
+      append_real(text, position);
+      text += ", beyond its limits ";
+      append_real(text, found->lower);
+      text += " to ";
+      append_real(text, found->upper);
+      throw InputError(InputProblem::value, text);
+    }
+    positions[static_cast<std::size_t>(found - robot.joints.begin())] = position;
+  }
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    if (const auto& mimic = robot.joints[j].mimic)
+      positions[j] = mimic->factor * positions[mimic->joint] + mimic->offset;
+  }
+  return positions;
+}
+
+std::vector<Motion> link_poses(const Robot& robot, std::span<const double> positions) {
+  SNUG_EXPECT(positions.size() == robot.joints.size());
+  std::vector<Motion> poses(robot.links.size());
+  for (std::size_t l = 0; l < robot.links.size(); ++l) {
+    if (!robot.links[l].joint) continue;
+    const std::size_t j = *robot.links[l].joint;
+    const Robot::Joint& joint = robot.joints[j];
+    const std::vector<std::vector<double>> at{{joint.fixed ? 0 : positions[j]}};
+    poses[l] = poses[joint.parent] * Trajectory::joints(std::span(&joint.axis, 1), {}, at).start();
+  }
+  return poses;
+}
+
+std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined) {
+  const std::vector<std::uint32_t> group = rigid_groups(robot);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> left_out;
+  for (const PartPair& pair : robot.allowed) left_out.insert(std::minmax(pair.a, pair.b));
+  std::set<std::pair<std::uint32_t, std::uint32_t>> neighbours;
+  for (const Robot::Joint& joint : robot.joints)
+    neighbours.insert(std::minmax(group[joint.parent], group[joint.child]));
+  std::vector<PartPair> pairs;
+  for (std::uint32_t a = 0; a < robot.links.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < robot.links.size(); ++b) {
+      if (robot.links[a].shapes.empty() || robot.links[b].shapes.empty() || group[a] == group[b]) continue;
+      if (!joined && neighbours.contains(std::minmax(group[a], group[b]))) continue;
+      if (!left_out.contains({a, b})) pairs.push_back({a, b});
+    }
+  }
+  return pairs;
+}
+
+// Parents come first: the larger index is not above the smaller one.
+std::uint32_t common_link(const Robot& robot, std::uint32_t a, std::uint32_t b) {
+  while (a != b) (a > b ? a : b) = above(robot, std::max(a, b));
+  return a;
+}
+
+std::pair<Trajectory, Trajectory> link_motions(const Robot& robot, const std::pair<std::uint32_t, Motion>& a,
+                                               const std::pair<std::uint32_t, Motion>& b,
+                                               std::span<const std::vector<double>> positions) {
+  const std::uint32_t common = common_link(robot, a.first, b.first);
+  const auto motion = [&](const std::pair<std::uint32_t, Motion>& shape) -> Trajectory {
+    std::vector<ChainJoint> chain;
+    std::vector<std::vector<double>> path(positions.size());
+    Motion before;  // of fixed joints
+    bool moves = false;
+    for (const std::uint32_t j : joints_between(robot, common, shape.first)) {
+      const Robot::Joint& joint = robot.joints[j];
+      if (joint.fixed) {
+        before = before * joint.axis.frame;
+        continue;
+      }
+      chain.push_back(joint.axis);
+      chain.back().frame = before * joint.axis.frame;
+      before = {};
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        path[i].push_back(positions[i][j]);
+        moves = moves || path[i].back() != path[0].back();
+      }
+    }
+    const Trajectory result = Trajectory::joints(chain, before * shape.second, path);
+    return moves ? result : Trajectory(result.start());
+  };
+  return {motion(a), motion(b)};
+}
+
+}  // namespace snug
