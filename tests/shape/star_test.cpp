@@ -893,6 +893,23 @@ TEST(star, at_a_fold_of_two_sizes_is_injective) {
   }
 }
 
+// A vertex of a smooth fan, of a border or of a crease moves, though most of its limit is its own control point; sharp ones stay.
+TEST(star, whose_vertex_moves_is_not_told_apart_by_a_plane) {
+  for (const bool border : {false, true}) {
+    for (const double sharpness : {0.0, 2.5, 9.75, 10.0}) {
+      const auto flat = [](double, double) { return 0.0; };
+      auto mesh = border ? half_disc(6, true, 0.4, flat) : disc(7, 1, flat);
+      mesh.corners.push_back({0, sharpness});
+      const LimitSurface surface = surface_of(mesh);
+      const CentreStar star = star_at_centre(surface, 1);
+      EXPECT_EQ(stays_in_place(star.sectors[0]), sharpness == 10) << border << " " << sharpness;
+      if (sharpness < 10) {
+        EXPECT_FALSE(certainly_meet_only_at_vertex(star.sectors[0], star.sectors[4]));
+      }
+    }
+  }
+}
+
 // Two bent quads at a vertex, against their halves of 8 by 8 parts.
 TEST(star, sectors_that_meet_only_at_the_vertex_do_so) {
   std::mt19937_64 random(12);
