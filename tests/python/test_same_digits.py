@@ -1,6 +1,6 @@
 """Questions of every kind, random ones, at the command and in Python: members of one name have the same digits.
 
-A thousand questions of each kind that the command takes by files; of others SNUG_QUESTIONS (3) of each surface.
+A thousand questions of each kind that the command takes by files; of others SNUG_QUESTIONS (2) of each surface.
 """
 
 import os
@@ -15,7 +15,7 @@ from test_command import COMMAND, output_of, text
 pytestmark = pytest.mark.skipif(not os.path.exists(COMMAND), reason="the command is not built")
 
 MANY = 1000
-FEW = int(os.environ.get("SNUG_QUESTIONS", 3))
+FEW = int(os.environ.get("SNUG_QUESTIONS", 2))
 PAIRS = [("bracket", "pin", "auto"), ("ring", "star", "auto"), ("pawn", "bust", "auto"), ("bracket", "pin", "doo-sabin"), ("star", "ring", "flat")]
 ALONE = [("bracket", "auto"), ("star", "auto"), ("pawn", "auto"), ("pin", "bilinear"), ("bracket", "midedge"), ("ring", "flat")]
 
@@ -143,6 +143,8 @@ def test_surfaces(name, scheme, tmp_path):
     assert [document["outcome"], document["max_radius"]] == [bounds.outcome, bounds.max_radius]
     for member in ("level", "base", "radius", "lower", "upper", "corners"):
         assert [each[member] for each in document["enclosures"]] == plain(getattr(bounds, member)), member
+    if FEW < 3 and (name, scheme) != ("pin", "bilinear"):
+        return  # what takes longest
     apart = snug.deviation(surface, surface.tessellate("1%"), absolute="0.1%")
     triangles = tmp_path / "triangles.obj"
     output_of("tessellate", file, *how, "--error", "1%", "-o", triangles)

@@ -60,7 +60,7 @@ long double apart(const Box& box, const Long& p) {
 }
 // Corners and edges of one against the other, along edges by golden sections of a convex function.
 long double apart(const Box& a, const Motion& pose_a, const Box& b, const Motion& pose_b) {
-  long double least = INFINITY;  // at most 1e-9 of an edge too large
+  long double least = INFINITY;  // at most 1e-8 of an edge too large
   for (std::size_t k = 0; k < 8; ++k) {
     least = std::min(least, apart(b, back(pose_b, placed(pose_a, corner(a, k)))));
     for (std::size_t axis = 1; axis < 8; axis *= 2) {
@@ -71,7 +71,7 @@ long double apart(const Box& a, const Motion& pose_a, const Box& b, const Motion
         return apart(a, {p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1]), p[2] + s * (q[2] - p[2])});
       };
       long double from = 0, to = 1;
-      for (int i = 0; i < 50; ++i) {
+      for (int i = 0; i < 42; ++i) {
         const long double s = from + 0.382L * (to - from), t = from + 0.618L * (to - from);
         if (at(s) < at(t)) {
           to = t;
@@ -221,12 +221,14 @@ void check(const Pair& pair, const ClearanceOptions& options, const std::string&
     ASSERT_LE(span.distance.lower, span.distance.upper) << what;
     least = std::min(least, span.distance.lower);
     most = std::min(most, span.distance.upper);
+    // Of many some forty.
+    if (static_cast<std::size_t>(&span - found.spans.data()) % (1 + found.spans.size() / 40) != 0) continue;
     const long double at_end = std::min(pair.apart(span.time.lower), pair.apart(span.time.upper)) - 1e-7L;
     // Surfaces that are one in the other are farther apart than their solids.
     if (options.solid || at_end > 1e-3L) {
       ASSERT_LE(at_end, span.distance.upper + doubt) << what;
     }
-    static constexpr std::array<double, 4> shares{0.1, 0.37, 0.5, 0.93};
+    static constexpr std::array<double, 3> shares{0.2, 0.5, 0.9};
     for (std::size_t i = 0; i < shares.size(); ++i) {
       const double then = span.time.lower + (span.time.upper - span.time.lower) * shares[i];
       const long double truth = pair.apart(then);
@@ -381,7 +383,7 @@ void check_margin(const Pair& pair, const TimeOfContactOptions& options, const s
 TEST(clearance, margins_of_first_times_are_kept) {
   std::mt19937_64 random(60);
   std::array<int, 4> verdicts{};
-  for (std::uint64_t trial = 0; trial < testing::share(2 * kinds * kinds); ++trial) {
+  for (std::uint64_t trial = 0; trial < testing::share(kinds * kinds); ++trial) {
     const Pair pair = any_pair(random, trial % kinds, trial / kinds % kinds, trial % 3 == 0);
     if (pair.duration() == 0) continue;
     TimeOfContactOptions options;
@@ -393,8 +395,8 @@ TEST(clearance, margins_of_first_times_are_kept) {
   }
   std::cout << "  " << verdicts[0] << " separated, " << verdicts[1] << " within, " << verdicts[2]
             << " intersecting, " << verdicts[3] << " undecided\n";
-  EXPECT_GT(verdicts[0], 10);
-  EXPECT_GT(verdicts[1], 10);
+  EXPECT_GT(verdicts[0], static_cast<int>(testing::share(8)));
+  EXPECT_GT(verdicts[1], static_cast<int>(testing::share(8)));
   EXPECT_LT(verdicts[3], 10);
 }
 
