@@ -13,9 +13,9 @@
 namespace snug {
 namespace {
 
-constexpr double share_of_curves = 0.4;      // of the error, for curves of edges
-constexpr std::size_t most_spans = 250'000;  // of a face
-constexpr double budget_factor = 4;          // by which the error grows if spans do not suffice
+constexpr double share_of_curves = 0.4;     // of the error, for curves of edges
+constexpr std::size_t most_spans = 20'000;  // of a square of a face
+constexpr double budget_factor = 4;         // by which the error grows if spans do not suffice
 constexpr double same_jet = 0x1p-42;
 
 // Faces of triangles of Loop's scheme.
@@ -149,6 +149,7 @@ class TriangleBrepMaker : public BrepMaker {
       faces_.assign(drafts_.size(), {});
       std::atomic<std::uint64_t> spans{0};
       std::atomic<std::size_t> count{0};
+      std::atomic<bool> far{false};
       parallel_for(drafts_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end && spans <= budget_; ++f) {
           monitor_.checkpoint();
@@ -156,13 +157,14 @@ class TriangleBrepMaker : public BrepMaker {
           std::vector<FaceSquare> squares;
           for (const PlacedQuad& placed : draft.quads) squares.push_back(square_of(placed));
           HermiteFace face(draft.width, draft.height, std::move(squares), border_of(draft));
-          face.refine(share_of_fits * reached_, most_spans);
+          if (!face.refine(share_of_fits * reached_, most_spans * draft.quads.size())) far = true;
           spans += face.spans();
           faces_[f] = face.parts();
         }
         count += end - begin;
         monitor_.report(0.2 + 0.5 * static_cast<double>(count) / static_cast<double>(drafts_.size()));
       });
+      spent_ = spent_ || far;
       if (spans <= budget_) return;
       reached_ *= budget_factor;
       spent_ = true;
