@@ -35,6 +35,7 @@ from ._snug import (
     Penetration,
     QuickHit,
     RayHits,
+    Robot,
     SelfContact,
     SelfContactPairs,
     SignedDistance,
@@ -53,6 +54,7 @@ from ._snug import (
     penetration,
     read,
     time_of_contact,
+    urdf,
 )
 
 __all__ = [
@@ -83,6 +85,7 @@ __all__ = [
     "PoseError",
     "QuickHit",
     "RayHits",
+    "Robot",
     "SelfContact",
     "SelfContactPairs",
     "SignedDistance",
@@ -104,6 +107,7 @@ __all__ = [
     "proximity",
     "read",
     "time_of_contact",
+    "urdf",
     "view",
 ]
 

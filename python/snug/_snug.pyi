@@ -1,4 +1,4 @@
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 from os import PathLike
 
 import numpy as np
@@ -232,6 +232,28 @@ class Trajectory:
     @property
     def duration(self) -> float: ...
     def at(self, time: float) -> Floats: ...
+
+class Robot:
+    @property
+    def name(self) -> str: ...
+    @property
+    def links(self) -> List[str]: ...
+    @property
+    def joints(self) -> Dict[str, Tuple[float, float]]: ...
+    @property
+    def outward(self) -> float: ...
+    def poses(self, positions: Optional[Mapping[str, float]] = None) -> Dict[str, Floats]: ...
+    def first_contacts(
+        self,
+        path: Sequence[Mapping[str, float]],
+        *,
+        tolerance: Length = "0.1%",
+        joined: bool = False,
+        max_splits: Optional[int] = None,
+        progress: Progress = None,
+    ) -> List[Tuple[str, str, TimeOfContact]]: ...
+    def __copy__(self) -> Robot: ...
+    def __deepcopy__(self, memo: Any) -> Robot: ...
 
 class Containment:
     @property
@@ -747,6 +769,15 @@ def contacts(
     progress: Progress = None,
     rigid: Optional[str] = None,
 ) -> Contacts: ...
+def urdf(
+    file: Any,
+    *,
+    visual: bool = False,
+    packages: Any = None,
+    root: Any = None,
+    srdf: Any = None,
+    primitive_error: float = 0.002,
+) -> Robot: ...
 def time_of_contact(
     a: Surface,
     motion_a: Union[Trajectory, Pose],

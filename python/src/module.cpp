@@ -65,6 +65,7 @@ PYBIND11_MODULE(_snug, module) {
   add_surface(module);
   add_pair_queries(module);
   add_motions(module);
+  add_robots(module);
   add_signatures(module);
   quicken_collide(module);
   zero_what_is_not_made(module);

@@ -66,6 +66,8 @@ void add_brep(py::class_<PySurface>& surface);
 void add_shapes(py::class_<PySurface>& surface, py::module_& module);
 void add_contacts(py::class_<PySurface>& surface, py::module_& module);
 void add_motions(py::module_& module);
+/// Robot, urdf().
+void add_robots(py::module_& module);
 
 /// A name in the file system's bytes. "-" is a file of that name here, not standard input.
 [[nodiscard]] std::string path_of(const py::object& path);

@@ -192,7 +192,6 @@ TEST(robot, where_nothing_moves_contact_is_proved_too) {
   const Motion across = Motion::rotation({1, 0, 0}, 0.5) * Motion::rotation({0, 0, 1}, 1.2);
   EXPECT_EQ(time_of_contact(box, Motion(), box, across).verdict, Verdict::intersecting);
   EXPECT_EQ(time_of_contact(box, Motion(), box, across).time, Interval(0));
-  EXPECT_EQ(time_of_contact(box, Motion(), box, across, {.prove_contact = false}).verdict, Verdict::within);
   EXPECT_EQ(time_of_contact(box, Motion(), box, across.with_offset({0, 0, 3})).verdict, Verdict::separated);
 }
 

@@ -1,0 +1,212 @@
+// Robots: links in a tree of joints, and which of them meet along a path.
+
+#include <snug/robot.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "answers.h"
+#include "call.h"
+#include "poses.h"
+#include "surface.h"
+
+namespace snug::python {
+namespace {
+
+struct Loaded {
+  Robot robot;
+  std::vector<Surface> surfaces;  // one a mesh
+};
+
+// An object that __new__ alone made has none.
+struct PyRobot {
+  std::shared_ptr<const Loaded> loaded;
+  [[nodiscard]] const Loaded& made() const {
+    if (!loaded) throw py::type_error("this Robot was not made: urdf() makes robots");
+    return *loaded;
+  }
+};
+
+std::string text_path(const py::object& path) {
+  return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+}
+
+PyRobot urdf(const py::object& file, bool visual, const py::object& packages, const py::object& root,
+             const py::object& srdf, double primitive_error) {
+  RobotOptions options{.visual = visual, .primitive_error = primitive_error};
+  if (py::isinstance<py::dict>(packages)) {
+    for (const auto& [name, folder] : packages.cast<py::dict>())
+      options.packages[name.cast<std::string>()] = text_path(py::reinterpret_borrow<py::object>(folder));
+  } else if (!packages.is_none()) {
+    options.packages[""] = text_path(packages);
+  }
+  if (!root.is_none()) options.root = text_path(root);
+  const std::string path = text_path(file), pairs = srdf.is_none() ? std::string() : text_path(srdf);
+  std::string bytes;
+  if (!srdf.is_none())
+    bytes = py::module_::import("pathlib").attr("Path")(srdf).attr("read_bytes")().cast<std::string>();
+  Call call;
+  return call.run([&](const Run& run) {
+    auto loaded = std::make_shared<Loaded>();
+    loaded->robot = read_robot(path, options, run);
+    if (!pairs.empty()) allow_pairs(loaded->robot, bytes, pairs);
+    for (const ControlMesh& mesh : loaded->robot.meshes) loaded->surfaces.emplace_back(mesh);
+    return PyRobot{std::move(loaded)};
+  });
+}
+
+std::vector<double> positions_of(const Robot& robot, const py::object& given) {
+  std::vector<std::pair<std::string, double>> positions;
+  if (!given.is_none()) {
+    for (const auto& [name, position] : given.cast<py::dict>())
+      positions.emplace_back(name.cast<std::string>(), position.cast<double>());
+  }
+  return joint_positions(robot, positions);
+}
+
+py::dict poses(const PyRobot& self, const py::object& positions) {
+  const Robot& robot = self.made().robot;
+  const std::vector<Motion> found = link_poses(robot, positions_of(robot, positions));
+  py::dict result;
+  for (std::size_t l = 0; l < found.size(); ++l) result[py::str(robot.links[l].name)] = matrix_of(found[l]);
+  return result;
+}
+
+// Two shapes of two links.
+struct ShapePair {
+  PartPair links;
+  std::size_t a, b;
+  TimeOfContact answer{};
+};
+
+std::string shape_name(const Robot& robot, std::uint32_t link, std::size_t shape) {
+  const Robot::Link& own = robot.links[link];
+  return own.shapes.size() == 1 ? own.name : own.name + '#' + std::to_string(shape + 1);
+}
+
+py::list first_contacts(const PyRobot& self, const py::list& path, const py::object& tolerance, bool joined,
+                        const py::object& max_splits, const py::object& progress) {
+  const Loaded& loaded = self.made();
+  const Robot& robot = loaded.robot;
+  if (path.empty()) throw py::value_error("path: give a dict of positions, or several");
+  std::vector<std::vector<double>> positions;
+  for (const auto& each : path)
+    positions.push_back(positions_of(robot, py::reinterpret_borrow<py::object>(each)));
+  std::vector<ShapePair> pairs;
+  for (const PartPair& links : pairs_to_check(robot, joined)) {
+    for (std::size_t a = 0; a < robot.links[links.a].shapes.size(); ++a) {
+      for (std::size_t b = 0; b < robot.links[links.b].shapes.size(); ++b) pairs.push_back({links, a, b});
+    }
+  }
+  double size = 0;
+  for (const Surface& surface : loaded.surfaces) size = std::max(size, surface.size());
+  TimeOfContactOptions options;
+  options.tolerance = length_of(tolerance, size, "tolerance");
+  Call call(progress, run_of(py::int_(0), max_splits));
+  call.run([&](const Run& run) {
+    for (ShapePair& pair : pairs) {
+      const Robot::Shape &a = robot.links[pair.links.a].shapes[pair.a],
+                         &b = robot.links[pair.links.b].shapes[pair.b];
+      const auto [of_a, of_b] =
+          link_motions(robot, {pair.links.a, a.pose}, {pair.links.b, b.pose}, positions);
+      pair.answer =
+          time_of_contact(loaded.surfaces[a.mesh], of_a, loaded.surfaces[b.mesh], of_b, options, run);
+      // A mesh that goes beyond its shape meets others before the shape does: that is nearness.
+      const bool goes_beyond = robot.outward[a.mesh] > 0 || robot.outward[b.mesh] > 0;
+      if (pair.answer.verdict == Verdict::intersecting && goes_beyond) pair.answer.verdict = Verdict::within;
+    }
+    return true;
+  });
+  py::list result;
+  for (ShapePair& pair : pairs) {
+    result.append(py::make_tuple(shape_name(robot, pair.links.a, pair.a),
+                                 shape_name(robot, pair.links.b, pair.b),
+                                 Answers<TimeOfContact>(std::move(pair.answer))));
+  }
+  return result;
+}
+
+}  // namespace
+
+void add_robots(py::module_& module) {
+  py::class_<PyRobot> cls(
+      module, "Robot",
+      "Links in a tree of joints, in metres and radians: urdf() reads one. It never changes.");
+  cls.attr("__module__") = "snug";
+  using py::arg;
+  const py::object none = py::none();
+  cls.def(py::init([](const py::args&, const py::kwargs&) -> PyRobot {
+    throw py::type_error("Robot() makes none: give snug.urdf(file)");
+  }));
+  cls.def_property_readonly(
+         "name", [](const PyRobot& self) { return self.made().robot.name; }, "As the file has it.")
+      .def_property_readonly(
+          "links",
+          [](const PyRobot& self) {
+            py::list names;
+            for (const Robot::Link& link : self.made().robot.links) names.append(link.name);
+            return names;
+          },
+          "Names of the links, parents first.")
+      .def_property_readonly(
+          "joints",
+          [](const PyRobot& self) {
+            py::dict limits;
+            for (const Robot::Joint& joint : self.made().robot.joints) {
+              if (!joint.fixed && !joint.mimic)
+                limits[py::str(joint.name)] = py::make_tuple(joint.lower, joint.upper);
+            }
+            return limits;
+          },
+          "Joints that have a position of their own, and their limits: {name: (lower, upper)}.")
+      .def_property_readonly(
+          "outward",
+          [](const PyRobot& self) {
+            double most = 0;
+            for (const double own : self.made().robot.outward) most = std::max(most, own);
+            return most;
+          },
+          "How far meshes of cylinders and spheres go beyond them, at most.")
+      .def("poses", poses, arg("positions") = none,
+           "The pose of each link in the frame of the root, {name: (4, 4)}, for positions {joint: radians or "
+           "metres}; joints\n"
+           "that are not named are at 0, or at the limit nearest to it. Raises ValueError.")
+      .def("first_contacts", first_contacts, arg("path"), py::kw_only(), arg("tolerance") = "0.1%",
+           arg("joined") = false, arg("max_splits") = none, arg("progress") = none,
+           "Which links meet along a path of the joints? A list of (link, link, TimeOfContact), one for each "
+           "two "
+           "shapes that\n"
+           "can move against each other; `link#2` where a link has several.\n\n"
+           "path: positions as poses() takes them, one unit of time from each to the next, at constant "
+           "speeds.\n"
+           "tolerance: metres, or percent of the largest mesh. joined: also pairs of links that a joint "
+           "joins.\n\n"
+           "Guarantee: no contact before `lower`, between the given positions too. Witnesses are in the "
+           "frame of "
+           "the last link\n"
+           "that carries both. Raises ValueError, OverflowError.")
+      .def("__repr__", [](const PyRobot& self) {
+        const Robot& robot = self.made().robot;
+        return "<snug.Robot " + robot.name + ": " + std::to_string(robot.links.size()) + " links>";
+      });
+  const auto itself = [](const py::object& self, const py::args&) { return self; };
+  cls.def("__copy__", itself);
+  cls.def("__deepcopy__", itself);
+  module.def(
+      "urdf", urdf, arg("file"), py::kw_only(), arg("visual") = false, arg("packages") = none,
+      arg("root") = none, arg("srdf") = none, arg("primitive_error") = 2e-3,
+      "The robot that a file in URDF describes.\n\n"
+      "visual: the visual shapes instead of the collision shapes. packages: {name: folder} for "
+      "package://name/, or the\n"
+      "folder that holds all packages. root: a folder that other paths may not leave, by default that of "
+      "the file.\n"
+      "srdf: a file whose disable_collisions name pairs that may touch. primitive_error: how far meshes of "
+      "cylinders and\n"
+      "spheres may go beyond them, as a share of the radius.\n\n"
+      "Raises FileError (broken files, cycles of joints, missing meshes, paths outside), ValueError.");
+}
+
+}  // namespace snug::python
