@@ -400,7 +400,23 @@ TEST(clearance, margins_of_first_times_are_kept) {
   EXPECT_LT(verdicts[3], 10);
 }
 
-// A ball of boxes that comes down on a plate is within the margin when it is so far above.
+// Control points that come down to 1 above a plate: near it, though nothing meets.
+TEST(clearance, of_control_points_that_come_near_is_known) {
+  const Surface a = Surface(testing::box({-5, -5, -1}, {5, 5, 0}, true), {.scheme = Scheme::flat});
+  const ControlMesh above = testing::box({0, 0, 4}, {1, 1, 5}, true),
+                    below = testing::box({0, 0, 1}, {1, 1, 2}, true);
+  const DeformingSurface b{Surface(above, {.scheme = Scheme::flat}), below.points};
+  const TimeOfContact found = time_of_contact({a}, b, {.tolerance = 1e-6, .margin = 2});
+  EXPECT_EQ(found.verdict, Verdict::within);
+  EXPECT_LE(found.time.lower, 2.0 / 3);
+  EXPECT_GE(found.time.lower, 2.0 / 3 - 1e-5);
+  EXPECT_EQ(time_of_contact({a}, b, {.margin = 0.9}).verdict, Verdict::separated);
+  const Clearance room = clearance({a}, b, {.absolute = 1e-3});
+  EXPECT_LE(room.distance.lower, 1);
+  EXPECT_GE(room.distance.upper, 1);
+}
+
+// A box that comes down on a plate is within the margin when it is so far above.
 TEST(clearance, of_a_fall_is_known) {
   const Surface a = Surface(testing::box({-5, -5, -1}, {5, 5, 0}, true), {.scheme = Scheme::flat}),
                 b = Surface(testing::box({0, 0, 0}, {1, 1, 1}, true), {.scheme = Scheme::flat});
