@@ -242,7 +242,8 @@ ExitStatus run(const Options& options) {
   TimeOfContactOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(moving.pair.size(), moving.pair.units());
   if (!options.margin.empty())
-    wanted.margin = parse_length(options.margin, "--margin", true).in_mesh_units(moving.pair.size(), moving.pair.units());
+    wanted.margin =
+        parse_length(options.margin, "--margin", true).in_mesh_units(moving.pair.size(), moving.pair.units());
   wanted.solid = options.solid;
   Report report("time-of-contact", options);
   moving.pair.write_heads(report);
@@ -265,10 +266,9 @@ ExitStatus run_clearance(const Options& options) {
   const MovingArguments moving(options, monitor);
   ClearanceOptions wanted;
   if (!options.absolute.empty() || options.relative > 0) {
-    wanted.absolute =
-        options.absolute.empty()
-            ? 0
-            : parse_length(options.absolute, "--absolute", true).in_mesh_units(moving.pair.size(), moving.pair.units());
+    wanted.absolute = options.absolute.empty() ? 0
+                                               : parse_length(options.absolute, "--absolute", true)
+                                                     .in_mesh_units(moving.pair.size(), moving.pair.units());
     wanted.relative = options.relative;
   } else {
     wanted.absolute = 1e-3 * moving.pair.size();

@@ -142,12 +142,13 @@ std::string units_of_files(const Job& job) {
     const std::optional<double> metres = units_of(job.surfaces[i]);
     const std::string own = metres ? text_of_unit(*metres) : "mm";
     if (own != "mm" && own != "cm" && own != "m" && own != "inch") {
-      throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own +
-                                                  ": STEP files are written in mm, cm, m or inch; give --scale and --units");
+      throw InputError(InputProblem::refused,
+                       job.meshes[i] + " is in " + own +
+                           ": STEP files are written in mm, cm, m or inch; give --scale and --units");
     }
     if (i > 0 && own != unit) {
-      throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own + ", " + job.meshes[0] + " in " + unit +
-                                                  ": give --units, if all are in one unit");
+      throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own + ", " + job.meshes[0] +
+                                                  " in " + unit + ": give --units, if all are in one unit");
     }
     unit = own;
   }
