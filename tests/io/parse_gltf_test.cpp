@@ -474,7 +474,7 @@ TEST(parse_gltf, containers_must_be_whole) {
 
 std::string text_of(const File& file, const json& buffer) {
   json whole = file.text;
-  whole["buffers"] = {buffer};
+  whole["buffers"] = json::array({buffer});
   return whole.dump(2);
 }
 std::string data_uri(const std::string& bytes) {

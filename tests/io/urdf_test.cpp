@@ -111,6 +111,11 @@ TEST(urdf, paths_outside_are_refused) {
             "--package "
             "leg=FOLDER");
   EXPECT_EQ(refusal(of("m/a.obj"), options), "dir/r.urdf:3: was read");
+  const auto beside = [&](const char* file) {  // of a robot without a folder
+    return unreadable([&] { static_cast<void>(parse_robot(robot(of(file)), "r.urdf", options)); });
+  };
+  EXPECT_EQ(beside("m/a.obj"), "r.urdf:3: was read");
+  EXPECT_NE(beside("../a.obj").find("leads out"), std::string::npos);
   options.root = ".";
   EXPECT_EQ(refusal(of("../a.obj"), options), "dir/r.urdf:3: was read");
   EXPECT_NE(refusal(of("../../a.obj"), options).find("leads out"), std::string::npos);
@@ -183,6 +188,14 @@ TEST(urdf, faults_are_one_line) {
       "r.urdf:1: XML: a document type, as in <!DOCTYPE>: entities are not read; take it out");
   EXPECT_EQ(unreadable([&] { static_cast<void>(parse_robot("<sdf/>", "r.urdf")); }),
             "r.urdf:1: URDF: 'robot' is missing: this is no robot");
+}
+
+TEST(urdf, names_of_meshes_are_shown_printable) {
+  RobotOptions options;
+  options.file = [](const std::string&) { return std::string(); };
+  const std::string message = refusal(
+      link("a", "<collision><geometry><mesh filename='m/\xfd.xyz'/></geometry></collision>"), options);
+  EXPECT_NE(message.find("m/\\xfd.xyz: meshes are read"), std::string::npos) << message;
 }
 
 TEST(urdf, srdf_names_pairs_that_may_touch) {

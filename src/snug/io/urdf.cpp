@@ -29,6 +29,21 @@ struct JointNames {
   std::size_t line;
 };
 
+// For messages: other bytes than printable ASCII as \xNN.
+std::string printable(const std::string& path) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  for (const char c : path) {
+    if (c >= ' ' && c <= '~') {
+      text += c;
+    } else {
+      text +=
+          {'\\', 'x', digits[static_cast<unsigned char>(c) >> 4], digits[static_cast<unsigned char>(c) & 15]};
+    }
+  }
+  return text;
+}
+
 class RobotReader {
  public:
   RobotReader(std::string_view text, const std::string& name, const std::string& path,
@@ -184,9 +199,11 @@ class RobotReader {
     if (filename.starts_with(file)) path = filename.substr(file.size());
     if (path.find("://") != std::string::npos || path.empty() || path.find('\0') != std::string::npos)
       static_cast<void>(path_inside(path, name_, what));  // says why not
-    const fs::path root = fs::absolute(options_.root.empty() ? folder_ : fs::path(options_.root))
-                              .lexically_normal(),
-                   place = fs::absolute(folder_ / path).lexically_normal();
+    const auto absolute = [](const fs::path& of) {
+      return fs::absolute(of.empty() ? fs::path(".") : of).lexically_normal();
+    };
+    const fs::path root = absolute(options_.root.empty() ? folder_ : fs::path(options_.root)),
+                   place = absolute(folder_ / path);
     const fs::path inside = place.lexically_relative(root);
     if (inside.empty() || *inside.begin() == "..") {
       fail_in_file(name_,
@@ -205,7 +222,7 @@ class RobotReader {
     const Vector3 scale = vector("scale", {1, 1, 1});
     const auto key = std::tuple(filename, scale.x, scale.y, scale.z);
     if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
-    const std::string place = place_of(filename);
+    const std::string place = place_of(filename), shown = printable(place);
     const fs::path folder = fs::path(place).parent_path();
     const auto bytes_of = [&](const std::string& path) {
       return options_.file ? options_.file(path) : read_file(path);
@@ -215,12 +232,12 @@ class RobotReader {
       const ReadOptions reading{.notes = options_.notes, .other_file = [&](const std::string& other) {
                                   return bytes_of((folder / other).string());
                                 }};
-      mesh = parse_mesh(bytes_of(place), place, reading);
+      mesh = parse_mesh(bytes_of(place), shown, reading);
     } catch (const InputError& error) {
       fail_in_file(name_ + ':' + std::to_string(xml_.line()), error.what());
     }
-    as_it_is(mesh, place);
-    scale_points(mesh, scale, place);
+    as_it_is(mesh, shown);
+    scale_points(mesh, scale, shown);
     const std::uint32_t number = add_mesh(std::move(mesh), filename);
     meshes_.emplace(key, number);
     return number;
