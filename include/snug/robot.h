@@ -89,7 +89,7 @@ SNUG_API void allow_pairs(Robot& robot, std::string_view bytes, const std::strin
     const Robot& robot, std::span<const std::pair<std::string, double>> given);
 
 /// Poses of all links in the frame of the root, up to roundings.
-/// Requires:  a position for each joint.
+/// Errors:    InputError (value) unless there is a position for each joint.
 [[nodiscard]] SNUG_API std::vector<Motion> link_poses(const Robot& robot, std::span<const double> positions);
 
 /// Pairs of links with shapes that can move against each other and are not allowed to touch. Links that a joint joins, also
@@ -97,11 +97,11 @@ SNUG_API void allow_pairs(Robot& robot, std::string_view bytes, const std::strin
 [[nodiscard]] SNUG_API std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined = false);
 
 /// The last link that moves both, itself included.
+/// Errors:    InputError (value) for a number that no link has.
 [[nodiscard]] SNUG_API std::uint32_t common_link(const Robot& robot, std::uint32_t a, std::uint32_t b);
 
 /// How two shapes move in the frame of the last link that moves both, from each list of positions of all joints to the next.
-/// Requires:  at least one list, each with a position for each joint.
-/// Errors:    those of Trajectory::joints().
+/// Errors:    InputError (value): those of Trajectory::joints() and of common_link(); lists without a position for each joint.
 [[nodiscard]] SNUG_API std::pair<Trajectory, Trajectory> link_motions(
     const Robot& robot, const std::pair<std::uint32_t, Motion>& a, const std::pair<std::uint32_t, Motion>& b,
     std::span<const std::vector<double>> positions);

@@ -69,6 +69,16 @@ TEST(robot, positions_have_names_limits_and_followers) {
   refused("grip", 0, "follows another joint");
 }
 
+TEST(robot, wrong_lists_and_links_are_refused) {
+  const Robot robot = arm();
+  const std::vector<double> few{0.1}, all = at(robot, 0, 0, 0);
+  EXPECT_THROW(static_cast<void>(link_poses(robot, few)), InputError);
+  EXPECT_THROW(static_cast<void>(common_link(robot, 0, 4)), InputError);
+  for (const auto& path : {std::vector{few, few}, std::vector{all, few}, std::vector<std::vector<double>>{}})
+    EXPECT_THROW(static_cast<void>(link_motions(robot, {0, {}}, {3, {}}, path)), InputError);
+  EXPECT_THROW(static_cast<void>(link_motions(robot, {0, {}}, {9, {}}, std::vector{all, all})), InputError);
+}
+
 TEST(robot, links_that_are_joined_are_left_out) {
   const Robot robot =
       arm("<link name='tool'><collision><geometry><box size='1 1 1'/></geometry></collision></link><joint "

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <set>
 
-#include <support/contract.h>
 #include <support/error.h>
 #include <support/number.h>
 
 namespace snug {
 namespace {
+
+void require_positions(const Robot& robot, std::span<const double> positions) {
+  require_value(positions.size() == robot.joints.size(),
+                "robot: give a position for each joint, as joint_positions() does");
+}
 
 /// The link that all links hang on which do not move against this one.
 std::vector<std::uint32_t> rigid_groups(const Robot& robot) {
@@ -74,7 +78,7 @@ std::vector<double> joint_positions(const Robot& robot,
 }
 
 std::vector<Motion> link_poses(const Robot& robot, std::span<const double> positions) {
-  SNUG_EXPECT(positions.size() == robot.joints.size());
+  require_positions(robot, positions);
   std::vector<Motion> poses(robot.links.size());
   for (std::size_t l = 0; l < robot.links.size(); ++l) {
     if (!robot.links[l].joint) continue;
@@ -106,6 +110,7 @@ std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined) {
 
 // Parents come first: the larger index is not above the smaller one.
 std::uint32_t common_link(const Robot& robot, std::uint32_t a, std::uint32_t b) {
+  require_value(std::max(a, b) < robot.links.size(), "robot: no link has this number");
   while (a != b) (a > b ? a : b) = above(robot, std::max(a, b));
   return a;
 }
@@ -113,6 +118,7 @@ std::uint32_t common_link(const Robot& robot, std::uint32_t a, std::uint32_t b) 
 std::pair<Trajectory, Trajectory> link_motions(const Robot& robot, const std::pair<std::uint32_t, Motion>& a,
                                                const std::pair<std::uint32_t, Motion>& b,
                                                std::span<const std::vector<double>> positions) {
+  for (const std::vector<double>& list : positions) require_positions(robot, list);
   const std::uint32_t common = common_link(robot, a.first, b.first);
   const auto motion = [&](const std::pair<std::uint32_t, Motion>& shape) -> Trajectory {
     std::vector<ChainJoint> chain;
