@@ -12,11 +12,9 @@
 #include "length.h"
 
 namespace snug::command {
-namespace {
-
-constexpr std::string_view blanks = " ,\t\r\n";
 
 std::vector<std::string> words_of(const std::string& text) {
+  constexpr std::string_view blanks = " ,\t\r\n";
   std::vector<std::string> words;
   for (auto begin = text.find_first_not_of(blanks); begin != std::string::npos;) {
     const auto end = std::min(text.find_first_of(blanks, begin), text.size());
@@ -25,6 +23,8 @@ std::vector<std::string> words_of(const std::string& text) {
   }
   return words;
 }
+
+namespace {
 
 double number_of(const std::string& word, const std::string& option) {
   const ParsedReal number = parse_real(word);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <snug/geometry.h>
 #include <snug/mesh.h>
@@ -10,6 +11,9 @@
 #include "options.h"
 
 namespace snug::command {
+
+/// What blanks or commas separate.
+[[nodiscard]] std::vector<std::string> words_of(const std::string& text);
 
 /// Where one mesh stands, as its options say it.
 struct PoseOptions {

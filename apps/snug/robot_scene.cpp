@@ -14,6 +14,7 @@
 
 #include "answer_writer.h"
 #include "common.h"
+#include "pose.h"
 #include "progress_bar.h"
 #include "witness.h"
 
@@ -27,17 +28,6 @@ struct Options : CommonOptions {
 };
 
 using Given = std::vector<std::pair<std::string, double>>;
-
-std::vector<std::string> words_of(const std::string& text) {
-  constexpr const char* blanks = " ,\t\r";
-  std::vector<std::string> words;
-  for (auto begin = text.find_first_not_of(blanks); begin != std::string::npos;) {
-    const auto end = std::min(text.find_first_of(blanks, begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = text.find_first_not_of(blanks, end);
-  }
-  return words;
-}
 
 // "0.5", or "30deg".
 double position_of(std::string word, const std::string& where) {
