@@ -359,6 +359,40 @@ TEST(quadratic_triangle, has_an_error_of_the_size_of_the_distance) {
   }
 }
 
+// Of patches with extraordinary corners it is made of those of their quarters.
+TEST(quadratic_triangle, is_nearer_than_one_through_limit_points) {
+  std::mt19937_64 random(87);
+  std::vector<double> ratios;
+  testing::for_each_surface(87, [&](const testing::NamedSurface& named) {
+    for (int trial = 0; trial < 6; ++trial) {
+      const PatchId p(random() % named.surface.patch_count());
+      if (!named.surface.has_patch(p)) continue;
+      const Patch patch = named.surface.patch(p);
+      if (patch.kind->polynomial() || patch.kind->transient() || !has_quadratic_rows(*patch.kind)) continue;
+      const auto at = [&](double u, double v) { return limit_point(patch, {u, v}).relative; };
+      const std::array<Vector3, 3> c{at(0, 0), at(1, 0), at(0, 1)};
+      const std::array<Vector3, 3> m{2.0 * at(0.5, 0) - 0.5 * (c[0] + c[1]),
+                                     2.0 * at(0.5, 0.5) - 0.5 * (c[1] + c[2]),
+                                     2.0 * at(0, 0.5) - 0.5 * (c[2] + c[0])};
+      double through = 0;
+      for (int j = 0; j <= 16; ++j) {
+        for (int i = 0; i + j <= 16; ++i) {
+          const double u = i / 16.0, v = j / 16.0, w = 1 - u - v;
+          const Vector3 q = w * w * c[0] + u * u * c[1] + v * v * c[2] + 2 * w * u * m[0] + 2 * u * v * m[1] +
+                            2 * v * w * m[2];
+          through = std::max(through, length(at(u, v) - q));
+        }
+      }
+      if (through < 1e-12) continue;
+      ratios.push_back(compare(named.surface.library(), patch, 16).sampled / through);
+      EXPECT_LT(ratios.back(), 1.5) << named.name;
+    }
+  });
+  ASSERT_GT(ratios.size(), testing::fewer(300));
+  std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+  EXPECT_LT(ratios[ratios.size() / 2], 1);
+}
+
 // Next to a corner that comes again the layout is all there is: patches less their linear interpolation.
 TEST(quadratic_rows, bound_a_piece_at_a_corner_by_its_layout_closely) {
   std::mt19937_64 random(86);

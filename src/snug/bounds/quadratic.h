@@ -63,6 +63,7 @@ class QuadraticRows {
  private:
   friend QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
   void make_fit(const BoundingRows& deep);
+  [[nodiscard]] bool make_fit_of_children(BoundsCache& library, const Kind& kind);
   void make_frame(const Kind& kind, const BoundingRows& deep);
   void make_lattice(BoundsCache& library, const Kind& kind);
   [[nodiscard]] Apart distance_on_lattice(const Patch& patch, const std::array<Vector3, 6>& q,
