@@ -59,7 +59,7 @@ constexpr double turned_share = 0x1p-3;
 constexpr double longest_detour = 1.25;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
 // of the quadratics that it is to be kept off.
-constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
+constexpr double clearance = 0.1, quadratic_share = 0x1p-4;
 // And how far Bezier points of its parts may stick out of them.
 constexpr double flat_share = 0x1p-5;
 constexpr std::size_t max_problems = 100, max_contacts = 1'000'000;

@@ -17,10 +17,8 @@
 
 namespace snug {
 
-// Pieces, their names, and which one each is a part of.
-struct PieceSet::Made {
-  std::vector<QuadraticTriangle> quadratics;
-  std::vector<PieceName> names;
+// Pieces, and which one each is a part of.
+struct PieceSet::Made : Pieces {
   std::vector<std::uint32_t> origins;
 
   void add(const QuadraticTriangle& quadratic, const PieceName& name) {
@@ -130,9 +128,11 @@ PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, in
   return all;
 }
 
+PieceSet::PieceSet(std::vector<QuadraticTriangle> given)
+    : pieces_(std::make_shared<const Pieces>(Pieces{std::move(given), {}})) {}
+
 void PieceSet::take(Made&& made) {
-  quadratics_ = std::move(made.quadratics);
-  names_ = std::move(made.names);
+  pieces_ = std::make_shared<const Pieces>(static_cast<Pieces&&>(made));
   tree_.reset();
 }
 
@@ -160,10 +160,10 @@ std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which,
   }
   const double own_error = units_.inverse().apply(error);
   Made made = made_in_order(size(), most, threads, monitor, [&](std::size_t i, Count& count, Made& parts) {
-    const PieceName& name = names_[i];
+    const PieceName& name = pieces_->names[i];
     if (which[i] == 0) {
       count.add();
-      parts.add(quadratics_[i], name);
+      parts.add(pieces_->quadratics[i], name);
       return;
     }
     Patch patch = surface_->patch(name.patch);
@@ -178,21 +178,21 @@ std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which,
 }
 
 BoundedPoint PieceSet::point(std::size_t piece, TriangleParameter at) const {
-  if (surface_ == nullptr) return {point_of(quadratics_[piece], at), given_point_error};
-  const Patch patch = surface_->patch(names_[piece].patch);
-  return unscaled(limit_point(patch, to_face(names_[piece].path, at)).from(patch.origin), units_);
+  if (surface_ == nullptr) return {point_of((*this)[piece], at), given_point_error};
+  const Patch patch = surface_->patch(name(piece).patch);
+  return unscaled(limit_point(patch, to_face(name(piece).path, at)).from(patch.origin), units_);
 }
 
 std::optional<Place> PieceSet::place(std::size_t piece, TriangleParameter at) const {
   if (surface_ == nullptr) return std::nullopt;
-  return place_of(*surface_, names_[piece], at);
+  return place_of(*surface_, name(piece), at);
 }
 
 void PieceSet::prepare(int threads) {
   if (prepared()) return;
   std::vector<Point3> centres;
   centres.reserve(size());
-  for (const QuadraticTriangle& q : quadratics_) {
+  for (const QuadraticTriangle& q : pieces_->quadratics) {
     Vector3 sum;
     for (const Point3& x : q.corners) sum = sum + (x - Point3{});
     centres.push_back(Point3{} + (1.0 / 3) * sum);
@@ -201,7 +201,7 @@ void PieceSet::prepare(int threads) {
   WideBvh nodes(centres, threads,
                 [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
                   const std::size_t first = boxes.size();
-                  for (const std::uint32_t i : items) boxes.push_back(box_of(quadratics_[i]));
+                  for (const std::uint32_t i : items) boxes.push_back(box_of((*this)[i]));
                   leaves[leaf] = WideNode(std::span(boxes).subspan(first));
                 });
   tree_ = std::make_shared<const Tree>(Tree{std::move(nodes), std::move(leaves)});

@@ -19,14 +19,14 @@ namespace snug {
 
 /// A set of points by its pieces, and a tree over them. Each piece is a quadratic triangle that stands for all points within its
 /// error: of a surface, whose pieces can be made finer, or of sets that are given, such as triangles, which stay as they are. Copies
-/// share the tree. May be read by many threads once it is prepared.
+/// share pieces and tree. May be read by many threads once it is prepared.
 class PieceSet {
  public:
   /// None.
   PieceSet() = default;
   /// Sets that stay as they are.
   /// Requires:  coordinates at most about 2; finite errors.
-  explicit PieceSet(std::vector<QuadraticTriangle> given) : quadratics_(std::move(given)) {}
+  explicit PieceSet(std::vector<QuadraticTriangle> given);
   /// Pieces that together are a surface, each split until its error is at most `error`. Where rounding or the last level ends that,
   /// the error is larger. None if these would be more than `most`; memory stays below what so many take. Coordinates are
   /// the surface's scaled ones times `units`.
@@ -36,11 +36,13 @@ class PieceSet {
   PieceSet(const LimitSurface& surface, double error, int threads, const WorkMonitor& monitor = {},
            std::uint64_t most = UINT64_MAX, PowerOfTwo units = {});
 
-  [[nodiscard]] std::size_t size() const { return quadratics_.size(); }
+  [[nodiscard]] std::size_t size() const { return pieces_ ? pieces_->quadratics.size() : 0; }
   [[nodiscard]] bool is_surface() const { return surface_ != nullptr; }
-  [[nodiscard]] const QuadraticTriangle& operator[](std::size_t piece) const { return quadratics_[piece]; }
+  [[nodiscard]] const QuadraticTriangle& operator[](std::size_t piece) const {
+    return pieces_->quadratics[piece];
+  }
   /// Of a piece of a surface.
-  [[nodiscard]] const PieceName& name(std::size_t piece) const { return names_[piece]; }
+  [[nodiscard]] const PieceName& name(std::size_t piece) const { return pieces_->names[piece]; }
   /// The point itself at a parameter of a piece, and where on the surface that is; nothing for sets that are given.
   [[nodiscard]] BoundedPoint point(std::size_t piece, TriangleParameter at) const;
   [[nodiscard]] std::optional<Place> place(std::size_t piece, TriangleParameter at) const;
@@ -90,6 +92,10 @@ class PieceSet {
     WideBvh nodes;
     std::vector<WideNode> leaves;  // boxes around the pieces of each leaf
   };
+  struct Pieces {
+    std::vector<QuadraticTriangle> quadratics;
+    std::vector<PieceName> names;
+  };
   struct Made;
   template <class Make>
   static Made made_in_order(std::size_t count, std::uint64_t most, int threads, const WorkMonitor& monitor,
@@ -98,8 +104,7 @@ class PieceSet {
 
   const LimitSurface* surface_ = nullptr;
   PowerOfTwo units_;
-  std::vector<QuadraticTriangle> quadratics_;
-  std::vector<PieceName> names_;
+  std::shared_ptr<const Pieces> pieces_;
   std::shared_ptr<const Tree> tree_;
 };
 

@@ -350,14 +350,13 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
     return flat_quadratic({points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]});
   };
   std::vector<std::vector<std::uint32_t>> members(fans + 1);
-  std::vector<std::vector<QuadraticTriangle>> facets(fans + 1);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    members[fan_of[t]].push_back(t);
-    facets[fan_of[t]].push_back(flat(t));
-  }
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) members[fan_of[t]].push_back(t);
   std::vector<PieceSet> sets;
-  for (std::vector<QuadraticTriangle>& of_set : facets) {
-    sets.emplace_back(std::move(of_set));
+  for (const std::vector<std::uint32_t>& of_set : members) {
+    std::vector<QuadraticTriangle> facets;
+    facets.reserve(of_set.size());
+    for (const std::uint32_t t : of_set) facets.push_back(flat(t));
+    sets.emplace_back(std::move(facets));
     if (sets.back().size() > 0) sets.back().prepare(threads);
   }
   constexpr std::size_t block = 1024;
