@@ -1,14 +1,16 @@
 // bench_models: whole models cold and near the limit, beside what else does it. Files: any models of Loop or Catmull-Clark.
 //
 // Set-up and bounds of every face beside Bfr's surfaces and boxes; triangles within 0.1 % beside uniform refinement to the first
-// level whose edges' midpoints are that near; a ray caster's build and bytes beside Embree's of the triangles; memory of both hulls.
+// level that deviation() finds that near; a ray caster's build and bytes beside Embree's of the triangles; memory of both hulls.
 
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/hull.h>
 #include <snug/ray.h>
@@ -61,6 +63,27 @@ TriangleMesh triangles_of(const Tessellation& found) {
   return mesh;
 }
 
+#ifdef SNUG_BENCH_OPENSUBDIV
+// The first level whose triangles are proved to be within the tolerance; nothing above four million.
+std::optional<int> near_level(const ControlMesh& mesh, Scheme scheme, double tolerance, bool limit_points) {
+  const Surface surface(mesh, {.scheme = scheme});
+  for (int level = 0;; ++level) {
+    const TriangleMesh uniform = osd_uniform(mesh, level, limit_points);
+    if (uniform.triangles.size() > 4'000'000) return {};
+    std::vector<Triangle> triangles;
+    triangles.reserve(uniform.triangles.size());
+    for (const auto& t : uniform.triangles) {
+      triangles.push_back({uniform.points[t[0]], uniform.points[t[1]], uniform.points[t[2]]});
+    }
+    const Deviation found =
+        deviation(surface, triangles, {.absolute = tolerance / 64, .threshold = tolerance});
+    if (std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper) <= tolerance) {
+      return level;
+    }
+  }
+}
+#endif
+
 void measure_triangles(const Model& model, Scheme scheme, const Options& options) {
   const double tolerance = share * Surface(model.mesh, {.scheme = scheme}).size();
   const auto made = [&](double error) {
@@ -72,16 +95,25 @@ void measure_triangles(const Model& model, Scheme scheme, const Options& options
   Group group(model.name + ", triangles within 0.1 %, cold", "mesh", options);
   group.limit_rounds(5);
   group.add("snug: tessellate, proved", 1, [&] { return made(tolerance).error_bound; });
+  std::vector<std::string> names;
 #ifdef SNUG_BENCH_OPENSUBDIV
-  const int level = osd_snapped_level(model.mesh, 2 * tolerance);
-  group.add("Far: uniform refinement, limit points", 1,
-            [&] { return osd_uniform(model.mesh, level, true).points.front().x; });
-  const std::vector<Times> times = group.run();
-  std::printf("# %s: %.0f triangles, %.2f us each; uniform (level %d) over snug: %.2f\n", model.name.c_str(),
-              count, 1e6 * times[0].median / count, level, time_of_one(times[1]) / time_of_one(times[0]));
-#else
-  group.run();
+  // Cold: no surface of ours is alive while these are timed.
+  for (const bool limit_points : {true, false}) {
+    const std::optional<int> level = near_level(model.mesh, scheme, tolerance, limit_points);
+    if (!level) continue;
+    names.push_back("level " + std::to_string(*level) + (limit_points ? " with limit points" : ""));
+    group.add("Far: uniform refinement, " + names.back(), 1, [&model, limit_points, level = *level] {
+      return osd_uniform(model.mesh, level, limit_points).points.front().x;
+    });
+  }
 #endif
+  const std::vector<Times> times = group.run();
+  std::printf("# %s: %.0f triangles, %.2f us each\n", model.name.c_str(), count,
+              1e6 * times[0].median / count);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::printf("# %s: uniform (%s) over snug: %.2f\n", model.name.c_str(), names[i].c_str(),
+                time_of_one(times[i + 1]) / time_of_one(times[0]));
+  }
 #ifdef SNUG_BENCH_EMBREE
   const Surface surface(model.mesh, {.scheme = scheme});
   const TriangleMesh mesh = triangles_of(found);
