@@ -340,7 +340,10 @@ struct CasterTree::Beam {
 
 QuickHit CasterTree::cast(const Ray& ray) const {
   const Approach approach(*this, ray);
-  if (approach.passes) return {};
+  return approach.passes ? QuickHit{} : nearest(approach);
+}
+
+QuickHit CasterTree::nearest(const Approach& approach) const {
   const kernels::CasterHit hit = kernels::cast(nodes_.data(), blocks_.data(), seen(approach), approach.from,
                                                approach.to, kernels::CasterQuery::nearest);
   return hit.place == caster_width ? QuickHit{} : finished(approach, hit);
@@ -375,7 +378,7 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const 
       spreading = std::max(spreading, length(approach.direction - middle.direction));
     }
     if (group.size() < 3 || apart + 2 * radius_ * spreading > widest_beam * radius_) {
-      for (std::size_t i = 0; i < group.size(); ++i) out[which[i]] = cast(rays[which[i]]);
+      for (std::size_t i = 0; i < group.size(); ++i) out[which[i]] = nearest(group[i]);
       continue;
     }
     Beam beam(*this, group, apart, spreading);

@@ -53,6 +53,7 @@ class CasterTree {
   // Of a beam; one ray has a kernel of its own, kernels::cast().
   template <class Visit>
   void walk(const kernels::CasterRay& ray, float grown, float first, float last, const Visit& visit) const;
+  [[nodiscard]] QuickHit nearest(const Approach& approach) const;
   [[nodiscard]] QuickHit finished(const Approach& approach, const kernels::CasterHit& hit) const;
 
   const LimitSurface* surface_;
