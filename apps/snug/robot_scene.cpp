@@ -104,18 +104,6 @@ Robot load_robot(const Options& options) {
   return robot;
 }
 
-// Two shapes of two links, and what was found.
-struct ShapePair {
-  PartPair links;
-  std::array<std::size_t, 2> shapes;
-  TimeOfContact answer{};
-};
-
-std::string shape_name(const Robot& robot, std::uint32_t link, std::size_t shape) {
-  const Robot::Link& own = robot.links[link];
-  return own.shapes.size() == 1 ? own.name : fmt::format("{}#{}", own.name, shape + 1);
-}
-
 class RobotRun {
  public:
   RobotRun(const Options& options) : options_(options), robot_(load_robot(options)) {
@@ -130,32 +118,26 @@ class RobotRun {
         surfaces_.push_back(make_surface(robot_.meshes[m], robot_.mesh_names[m], options, options.scheme));
       });
     }
-    for (const PartPair& links : pairs_to_check(robot_, options.joined)) {
-      for (std::size_t i = 0; i < robot_.links[links.a].shapes.size(); ++i) {
-        for (std::size_t k = 0; k < robot_.links[links.b].shapes.size(); ++k)
-          pairs_.push_back({links, {i, k}});
-      }
-    }
   }
 
   ExitStatus run() {
     Report report("scene", options_);
     write_head(report);
-    ask_all();
+    const std::vector<LinkContact> contacts = ask_all();
     std::array<std::size_t, 4> counts{};
     bool complete = true;
-    for (const ShapePair& pair : pairs_) {
-      ++counts[static_cast<std::size_t>(pair.answer.verdict)];
-      complete = complete && pair.answer.outcome == Outcome::complete;
-      if (report.json()) write_json(report.write(), pair);
-      if (pair.answer.verdict != Verdict::separated) report.text(row(pair));
+    for (const LinkContact& contact : contacts) {
+      ++counts[static_cast<std::size_t>(contact.answer.verdict)];
+      complete = complete && contact.answer.outcome == Outcome::complete;
+      if (report.json()) write_json(report.write(), contact);
+      if (contact.answer.verdict != Verdict::separated) report.text(row(contact));
     }
     if (report.json()) {
       report.write().end_array();
       for (std::size_t i = 0; i < counts.size(); ++i)
         report.write().field(name_of(static_cast<Verdict>(i)), counts[i]);
     }
-    std::string sentence = fmt::format("{} pairs of shapes", pairs_.size());
+    std::string sentence = fmt::format("{} pairs of shapes", contacts.size());
     for (std::size_t i = 0; i < counts.size(); ++i) {
       if (counts[i] > 0) sentence += fmt::format(", {} {}", counts[i], name_of(static_cast<Verdict>(i)));
     }
@@ -170,44 +152,13 @@ class RobotRun {
   }
 
  private:
-  [[nodiscard]] std::pair<std::uint32_t, Motion> shape(const ShapePair& pair, std::size_t side) const {
-    const std::uint32_t link = side == 0 ? pair.links.a : pair.links.b;
-    return {link, robot_.links[link].shapes[pair.shapes[side]].pose};
-  }
-  [[nodiscard]] const Surface& surface(const ShapePair& pair, std::size_t side) const {
-    const std::uint32_t link = side == 0 ? pair.links.a : pair.links.b;
-    return surfaces_[robot_.links[link].shapes[pair.shapes[side]].mesh];
-  }
-
-  [[nodiscard]] double outward(const ShapePair& pair, std::size_t side) const {
-    const std::uint32_t link = side == 0 ? pair.links.a : pair.links.b;
-    return robot_.outward[robot_.links[link].shapes[pair.shapes[side]].mesh];
-  }
-
-  void ask_all() {
+  [[nodiscard]] std::vector<LinkContact> ask_all() const {
     ProgressBar bar("moving", options_.quiet);
     const WorkMonitor monitor = bar.monitor();
-    for (std::size_t m = 0; m < surfaces_.size(); ++m)
-      naming(robot_.mesh_names[m], [&] { surfaces_[m].prepare({.monitor = &monitor}); });
-    std::atomic<std::size_t> done{0};
-    parallel_for(pairs_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        ShapePair& pair = pairs_[i];
-        const auto [a, b] = link_motions(robot_, shape(pair, 0), shape(pair, 1), positions_);
-        TimeOfContactOptions wanted;
-        const double size = std::max(surface(pair, 0).size(), surface(pair, 1).size());
-        wanted.tolerance = tolerance_.in_mesh_units(size, 1.0);
-        WorkMonitor quiet;
-        quiet.stop = monitor.stop;
-        pair.answer = time_of_contact(surface(pair, 0), a, surface(pair, 1), b, wanted,
-                                      {.threads = 1, .monitor = &quiet, .max_splits = options_.max_splits});
-        // A mesh that goes beyond its shape meets others before the shape does: that is nearness.
-        const bool goes_beyond = outward(pair, 0) > 0 || outward(pair, 1) > 0;
-        if (pair.answer.verdict == Verdict::intersecting && goes_beyond)
-          pair.answer.verdict = Verdict::within;
-        monitor.report(static_cast<double>(++done) / static_cast<double>(pairs_.size()));
-      }
-    });
+    const auto tolerance = [&](double size) { return tolerance_.in_mesh_units(size, 1.0); };
+    return first_contacts(
+        robot_, surfaces_, positions_, {.tolerance = tolerance, .joined = options_.joined},
+        {.threads = options_.threads, .monitor = &monitor, .max_splits = options_.max_splits});
   }
 
   void write_head(Report& report) const {
@@ -229,23 +180,15 @@ class RobotRun {
     json.field("outward", outward).key("results").begin_array();
   }
 
-  void write_json(JsonWriter& json, const ShapePair& pair) const {
-    const auto [a, b] = link_motions(robot_, shape(pair, 0), shape(pair, 1), positions_);
-    const TimeOfContact& answer = pair.answer;
-    const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
-    const auto pose = [&](const Trajectory& motion) { return motion.at(motion.duration() > 0 ? time : 0); };
-    json.begin_object().field("a", shape_name(robot_, pair.links.a, pair.shapes[0]));
-    json.field("b", shape_name(robot_, pair.links.b, pair.shapes[1]));
-    json.field("frame", robot_.links[common_link(robot_, pair.links.a, pair.links.b)].name);
-    const Sides sides{surface(pair, 0).at(pose(a)), surface(pair, 1).at(pose(b))};
-    write_fields(json, answer, sides);
+  static void write_json(JsonWriter& json, const LinkContact& contact) {
+    json.begin_object().field("a", contact.a).field("b", contact.b).field("frame", contact.frame);
+    write_fields(json, contact.answer, contact.placed);
     json.end_object();
   }
 
-  [[nodiscard]] std::string row(const ShapePair& pair) const {
-    const TimeOfContact& answer = pair.answer;
-    std::string text = fmt::format("{} {} {}", shape_name(robot_, pair.links.a, pair.shapes[0]),
-                                   shape_name(robot_, pair.links.b, pair.shapes[1]), name_of(answer.verdict));
+  [[nodiscard]] std::string row(const LinkContact& contact) const {
+    const TimeOfContact& answer = contact.answer;
+    std::string text = fmt::format("{} {} {}", contact.a, contact.b, name_of(answer.verdict));
     if (options_.path.empty()) return text;
     return text + fmt::format(" {} {}", text_at_most(answer.time.lower),
                               answer.time.upper < INFINITY ? text_at_most(answer.time.upper, true) : "-");
@@ -256,7 +199,6 @@ class RobotRun {
   Length tolerance_;
   std::vector<std::vector<double>> positions_;
   std::vector<Surface> surfaces_;  // one a mesh
-  std::vector<ShapePair> pairs_;
 };
 
 }  // namespace

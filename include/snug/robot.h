@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -105,5 +106,30 @@ SNUG_API void allow_pairs(Robot& robot, std::string_view bytes, const std::strin
 [[nodiscard]] SNUG_API std::pair<Trajectory, Trajectory> link_motions(
     const Robot& robot, const std::pair<std::uint32_t, Motion>& a, const std::pair<std::uint32_t, Motion>& b,
     std::span<const std::vector<double>> positions);
+
+struct LinkContactsOptions {
+  /// Shapes this close may be reported as within; `size`: the larger one of two meshes. Default: 0.1 % of it.
+  std::function<double(double size)> tolerance{};
+  bool joined = false;  ///< also pairs of links that a joint joins
+};
+/// When two shapes of two links first meet.
+struct LinkContact {
+  std::string a, b;                     ///< links; "link#2" where one has several shapes
+  std::string frame;                    ///< the link in whose frame the witness is
+  std::array<PlacedSurface, 2> placed;  ///< at the upper end of the time, or at 0 if that is infinite
+  TimeOfContact answer;
+};
+
+/// Which links meet along a path of the joints: first contacts of all pairs_to_check(), shape by shape. `surfaces`: one a mesh.
+///
+/// Guarantee: that of time_of_contact() with link_motions(), between the positions too. Meshes that go beyond their shapes are
+///            never "intersecting": that is nearness.
+/// Errors:    those of link_motions() and time_of_contact(); InputError (value) unless there is a surface for each mesh.
+/// Budget:    of each pair, as time_of_contact() has it.
+[[nodiscard]] SNUG_API std::vector<LinkContact> first_contacts(const Robot& robot,
+                                                               std::span<const Surface> surfaces,
+                                                               std::span<const std::vector<double>> positions,
+                                                               const LinkContactsOptions& options = {},
+                                                               const Run& run = {});
 
 }  // namespace snug

@@ -53,6 +53,7 @@ from ._snug import (
     inspect,
     penetration,
     read,
+    read_assembly,
     time_of_contact,
     urdf,
 )
@@ -106,6 +107,7 @@ __all__ = [
     "penetration",
     "proximity",
     "read",
+    "read_assembly",
     "time_of_contact",
     "urdf",
     "view",

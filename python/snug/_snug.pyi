@@ -250,6 +250,7 @@ class Robot:
         tolerance: Length = "0.1%",
         joined: bool = False,
         max_splits: Optional[int] = None,
+        threads: int = 0,
         progress: Progress = None,
     ) -> List[Tuple[str, str, TimeOfContact]]: ...
     def __copy__(self) -> Robot: ...
@@ -717,6 +718,18 @@ def read(
     threads: int = 0,
     progress: Progress = None,
 ) -> Surface: ...
+def read_assembly(
+    path: Path,
+    *,
+    scheme: Optional[str] = "auto",
+    boundary: Optional[str] = None,
+    sharp: Union[float, str, None] = None,
+    weld: Union[bool, float, None] = None,
+    bounds: str = "rows",
+    tight: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> List[Tuple[str, Surface, Floats]]: ...
 def inspect(vertices: Any, faces: Any = None, *, scheme: Optional[str] = "auto") -> Dict[str, Any]: ...
 def _pose(pose: Pose, name: str, rigid: Optional[str] = None) -> Floats: ...
 def _near_pairs(

@@ -75,57 +75,23 @@ py::dict poses(const PyRobot& self, const py::object& positions) {
   return result;
 }
 
-// Two shapes of two links.
-struct ShapePair {
-  PartPair links;
-  std::size_t a, b;
-  TimeOfContact answer{};
-};
-
-std::string shape_name(const Robot& robot, std::uint32_t link, std::size_t shape) {
-  const Robot::Link& own = robot.links[link];
-  return own.shapes.size() == 1 ? own.name : own.name + '#' + std::to_string(shape + 1);
-}
-
 py::list first_contacts(const PyRobot& self, const py::list& path, const py::object& tolerance, bool joined,
-                        const py::object& max_splits, const py::object& progress) {
+                        const py::object& max_splits, const py::object& threads, const py::object& progress) {
   const Loaded& loaded = self.made();
-  const Robot& robot = loaded.robot;
-  if (path.empty()) throw py::value_error("path: give a dict of positions, or several");
   std::vector<std::vector<double>> positions;
   for (const auto& each : path)
-    positions.push_back(positions_of(robot, py::reinterpret_borrow<py::object>(each)));
-  std::vector<ShapePair> pairs;
-  for (const PartPair& links : pairs_to_check(robot, joined)) {
-    for (std::size_t a = 0; a < robot.links[links.a].shapes.size(); ++a) {
-      for (std::size_t b = 0; b < robot.links[links.b].shapes.size(); ++b) pairs.push_back({links, a, b});
-    }
-  }
-  double size = 0;
-  for (const Surface& surface : loaded.surfaces) size = std::max(size, surface.size());
-  TimeOfContactOptions options;
-  options.tolerance = length_of(tolerance, size, "tolerance");
-  Call call(progress, run_of(py::int_(0), max_splits));
-  call.run([&](const Run& run) {
-    for (ShapePair& pair : pairs) {
-      const Robot::Shape &a = robot.links[pair.links.a].shapes[pair.a],
-                         &b = robot.links[pair.links.b].shapes[pair.b];
-      const auto [of_a, of_b] =
-          link_motions(robot, {pair.links.a, a.pose}, {pair.links.b, b.pose}, positions);
-      pair.answer =
-          time_of_contact(loaded.surfaces[a.mesh], of_a, loaded.surfaces[b.mesh], of_b, options, run);
-      // A mesh that goes beyond its shape meets others before the shape does: that is nearness.
-      const bool goes_beyond = robot.outward[a.mesh] > 0 || robot.outward[b.mesh] > 0;
-      if (pair.answer.verdict == Verdict::intersecting && goes_beyond) pair.answer.verdict = Verdict::within;
-    }
-    return true;
+    positions.push_back(positions_of(loaded.robot, py::reinterpret_borrow<py::object>(each)));
+  LinkContactsOptions options{.joined = joined};
+  const std::optional<double> one = length_of(tolerance, 1, "tolerance"),
+                              two = length_of(tolerance, 2, "tolerance");
+  if (one) options.tolerance = [=](double size) { return *one == *two ? *one : *one * size; };
+  Call call(progress, run_of(threads, max_splits));
+  std::vector<LinkContact> found = call.run([&](const Run& run) {
+    return snug::first_contacts(loaded.robot, loaded.surfaces, positions, options, run);
   });
   py::list result;
-  for (ShapePair& pair : pairs) {
-    result.append(py::make_tuple(shape_name(robot, pair.links.a, pair.a),
-                                 shape_name(robot, pair.links.b, pair.b),
-                                 Answers<TimeOfContact>(std::move(pair.answer))));
-  }
+  for (LinkContact& each : found)
+    result.append(py::make_tuple(each.a, each.b, Answers<TimeOfContact>(std::move(each.answer))));
   return result;
 }
 
@@ -175,14 +141,15 @@ void add_robots(py::module_& module) {
            "metres}; joints\n"
            "that are not named are at 0, or at the limit nearest to it. Raises ValueError.")
       .def("first_contacts", first_contacts, arg("path"), py::kw_only(), arg("tolerance") = "0.1%",
-           arg("joined") = false, arg("max_splits") = none, arg("progress") = none,
+           arg("joined") = false, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
            "Which links meet along a path of the joints? A list of (link, link, TimeOfContact), one for each "
            "two "
            "shapes that\n"
            "can move against each other; `link#2` where a link has several.\n\n"
            "path: positions as poses() takes them, one unit of time from each to the next, at constant "
            "speeds.\n"
-           "tolerance: metres, or percent of the largest mesh. joined: also pairs of links that a joint "
+           "tolerance: metres, or percent of the larger one of two meshes. joined: also pairs of links that "
+           "a joint "
            "joins.\n\n"
            "Guarantee: no contact before `lower`, between the given positions too. Witnesses are in the "
            "frame of "

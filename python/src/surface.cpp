@@ -10,6 +10,7 @@
 #include "answers.h"
 #include "call.h"
 #include "fields.h"
+#include "poses.h"
 
 namespace snug::python {
 
@@ -295,26 +296,59 @@ auto naming(const std::string& path, const Work& work) {
   }
 }
 
+// What a file is made into: keywords of read() and read_assembly() alike.
+struct Reading {
+  SurfaceOptions options;
+  Run how;
+  std::optional<double> distance, angle;
+  std::string path;
+  std::vector<std::string> notes{};
+
+  // Of read_mesh() or read_assembly(); `make` is given it, and makes surfaces with surface().
+  template <class Read, class Make>
+  auto run(const py::object& progress, const Read& read, const Make& make) {
+    auto result = naming(path, [&] {
+      Call call(progress);
+      return make(call.run([&](const Run& run) {
+        notes.clear();
+        ReadOptions reading{.weld = {}, .notes = [&](const std::string& line) { notes.push_back(line); }};
+        if (distance) reading.weld = [d = *distance](double) { return d; };
+        return read(path, reading, run);
+      }));
+    });
+    warn(notes);
+    return result;
+  }
+  std::unique_ptr<PySurface> surface(ControlMesh mesh) {
+    return made(std::move(mesh), options, {}, angle, how, py::none(), notes, path);
+  }
+};
+Reading reading_of(const py::object& file, const py::object& scheme, const py::object& boundary,
+                   const py::object& sharp, const py::object& weld, const py::object& bounds, bool tight,
+                   const py::object& threads) {
+  const SurfaceOptions options = options_of(scheme, boundary, bounds, tight);
+  return {options, run_of(threads), weld_distance(weld), sharp_angle(sharp, options), path_of(file)};
+}
+
 std::unique_ptr<PySurface> read(const py::object& file, const py::object& scheme, const py::object& boundary,
                                 const py::object& sharp, const py::object& weld, const py::object& bounds,
                                 bool tight, const py::object& threads, const py::object& progress) {
-  const SurfaceOptions options = options_of(scheme, boundary, bounds, tight);
-  const Run how = run_of(threads);
-  const std::optional<double> distance = weld_distance(weld), angle = sharp_angle(sharp, options);
-  const std::string path = path_of(file);
-  std::vector<std::string> notes;
-  auto surface = naming(path, [&] {
-    Call call(progress);
-    ControlMesh mesh = call.run([&](const Run& run) {
-      notes.clear();
-      ReadOptions reading{.weld = {}, .notes = [&](const std::string& line) { notes.push_back(line); }};
-      if (distance) reading.weld = [d = *distance](double) { return d; };
-      return read_mesh(path, reading, run);
-    });
-    return made(std::move(mesh), options, {}, angle, how, py::none(), notes, path);
+  Reading reading = reading_of(file, scheme, boundary, sharp, weld, bounds, tight, threads);
+  return reading.run(progress, read_mesh, [&](ControlMesh mesh) { return reading.surface(std::move(mesh)); });
+}
+
+py::list read_parts(const py::object& file, const py::object& scheme, const py::object& boundary,
+                    const py::object& sharp, const py::object& weld, const py::object& bounds, bool tight,
+                    const py::object& threads, const py::object& progress) {
+  Reading reading = reading_of(file, scheme, boundary, sharp, weld, bounds, tight, threads);
+  return reading.run(progress, read_assembly, [&](const MeshAssembly& assembly) {
+    std::vector<py::object> surfaces;
+    for (const ControlMesh& mesh : assembly.meshes) surfaces.push_back(py::cast(reading.surface(mesh)));
+    py::list parts;
+    for (const MeshAssembly::Part& part : assembly.parts)
+      parts.append(py::make_tuple(part.name, surfaces[part.mesh], matrix_of(part.pose)));
+    return parts;
   });
-  warn(notes);
-  return surface;
 }
 
 void write(const ControlMesh& mesh, const py::object& file) {
@@ -585,6 +619,13 @@ void add_surface(py::module_& module) {
              "Notes of the reader, and\n"
              "that triangles of another file are smoothed, become MeshWarnings.\n\n"
              "Raises FileError (.filename, .line), MeshError, ValueError.");
+  module.def(
+      "read_assembly", &read_parts, arg("path"), py::kw_only(), arg("scheme") = "auto",
+      arg("boundary") = none, arg("sharp") = none, arg("weld") = none, arg("bounds") = "rows",
+      arg("tight") = false, arg("threads") = 0, arg("progress") = none,
+      "The meshes of a file apart, and where it places them (glTF, 3MF, USD): a list of (name, Surface, "
+      "pose); instances\n"
+      "share their Surface. Of other formats the one mesh. Keywords and errors are those of read().");
   module.def("inspect", &inspected, arg("vertices"), arg("faces") = none, py::kw_only(),
              arg("scheme") = "auto",
              "What is in a mesh, broken ones too, and what is wrong with it, as a dict: counts of its "

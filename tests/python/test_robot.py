@@ -40,7 +40,7 @@ def test_wrong_robots_and_positions_are_told(arm, tmp_path):
         arm.poses({"knee": 1})
     with pytest.raises(ValueError, match="beyond its limits"):
         arm.first_contacts([{"elbow": 4}])
-    with pytest.raises(ValueError, match="give a dict of positions"):
+    with pytest.raises(ValueError, match="give positions of the joints"):
         arm.first_contacts([])
     with pytest.raises(TypeError):
         snug.Robot()
@@ -51,3 +51,29 @@ def test_wrong_robots_and_positions_are_told(arm, tmp_path):
         snug.urdf(tmp_path / "cycle.urdf")
     with pytest.raises(snug.FileError):
         snug.urdf(tmp_path / "none.urdf")
+
+
+def test_parts_of_a_file_are_where_it_places_them(tmp_path):
+    box = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+    (tmp_path / "one.obj").write_text(box)
+    ((name, alone, pose),) = snug.read_assembly(tmp_path / "one.obj", scheme="bilinear")
+    assert (name, alone.scheme) == ("one", "bilinear") and np.array_equal(pose, np.eye(4))
+    mesh = """
+    def Mesh "{0}" {{
+        int[] faceVertexCounts = [4]
+        int[] faceVertexIndices = [0, 1, 2, 3]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+        double3 xformOp:translate = ({1}, 0, 0)
+        uniform token[] xformOpOrder = ["xformOp:translate"]
+    }}
+    """
+    (tmp_path / "two.usda").write_text("#usda 1.0\n" + mesh.format("left", 0) + mesh.format("right", 3))
+    parts = snug.read_assembly(tmp_path / "two.usda", scheme="bilinear")
+    assert [name for name, _, _ in parts] == ["left", "right"]
+    manager = snug.CollisionManager()
+    for name, surface, pose in parts:
+        manager.add_object(name, surface, pose)
+    assert manager.min_distance_internal() == pytest.approx(2)
+    assert parts[1][2][0, 3] == 3
+    with pytest.raises(snug.FileError):
+        snug.read_assembly(tmp_path / "none.usda")

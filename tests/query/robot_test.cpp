@@ -1,5 +1,6 @@
 #include <snug/robot.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -144,15 +145,12 @@ TEST(robot, first_contacts_along_a_path_are_where_geometry_puts_them) {
   for (const ControlMesh& mesh : robot.meshes) surfaces.emplace_back(mesh);
   const auto ask = [&](const std::string& a, const std::string& b,
                        const std::vector<std::vector<double>>& path) {
-    const auto link = [&](const std::string& name) {
-      return static_cast<std::uint32_t>(std::ranges::find(robot.links, name, &Robot::Link::name) -
-                                        robot.links.begin());
-    };
-    const auto &shape_a = robot.links[link(a)].shapes[0], &shape_b = robot.links[link(b)].shapes[0];
-    const auto [motion_a, motion_b] =
-        link_motions(robot, {link(a), shape_a.pose}, {link(b), shape_b.pose}, path);
-    return time_of_contact(surfaces[shape_a.mesh], motion_a, surfaces[shape_b.mesh], motion_b,
-                           {.tolerance = 1e-6});
+    const LinkContactsOptions fine{.tolerance = [](double) { return 1e-6; }, .joined = true};
+    for (const LinkContact& each : first_contacts(robot, surfaces, path, fine)) {
+      if (each.a == a && each.b == b) return each.answer;
+    }
+    ADD_FAILURE() << a << ' ' << b;
+    return TimeOfContact();
   };
   // The elbow turns the lower link over the upper one: a corner of the lower one, (0.05, -0.1) in its frame, never comes there,
   // but its side y = -0.1... turned by the angle t meets the corner (-0.05, 0.1) of the upper link, as that end is seen from
@@ -194,6 +192,54 @@ TEST(robot, first_contacts_along_a_path_are_where_geometry_puts_them) {
       EXPECT_GE(answer.time.upper, first - 1 / 1999.0) << name;
     }
   }
+}
+
+TEST(robot, first_contacts_of_all_pairs_are_those_of_each) {
+  const auto link = [](const std::string& name, const std::string& shapes) {
+    return "<link name='" + name + "'>" + shapes + "</link>";
+  };
+  const auto shape = [](double x, const std::string& geometry) {
+    return "<collision><origin xyz='" + std::to_string(x) + " 0 0'/><geometry>" + geometry +
+           "</geometry></collision>";
+  };
+  const std::string box = "<box size='0.9 0.2 0.2'/>";
+  const Robot robot = parse_robot(
+      "<robot name='arm'>" + link("base", shape(0.5, box)) + link("upper", shape(0.5, box)) +
+          link("hand", shape(0.3, "<sphere radius='0.1'/>") + shape(0.7, "<box size='0.2 0.2 0.2'/>")) +
+          "<joint name='shoulder' type='revolute'><parent link='base'/><child link='upper'/><origin xyz='1 0 "
+          "0'/>"
+          "<axis xyz='0 0 1'/><limit lower='-4' upper='4'/></joint><joint name='elbow' "
+          "type='revolute'><parent "
+          "link='upper'/><child link='hand'/><origin xyz='1 0 0'/><axis xyz='0 0 1'/><limit lower='-4' "
+          "upper='4'/></joint></robot>",
+      "arm.urdf");
+  std::vector<Surface> surfaces;
+  for (const ControlMesh& mesh : robot.meshes) surfaces.emplace_back(mesh);
+  const std::vector<std::vector<double>> path{{0, 0}, {2.8, 1.9}};
+  for (const int threads : {1, 3}) {
+    std::atomic<int> reports{0};
+    const WorkMonitor monitor{.on_progress = [&](double done) { reports += done > 0 && done <= 1; }};
+    const std::vector<LinkContact> found =
+        first_contacts(robot, surfaces, path, {.joined = true}, {.threads = threads, .monitor = &monitor});
+    ASSERT_EQ(found.size(), 5u);
+    EXPECT_EQ(reports, 5);
+    EXPECT_EQ(found[1].a + ' ' + found[1].b + ' ' + found[1].frame, "base hand#1 base");
+    EXPECT_EQ(found[4].a + ' ' + found[4].b + ' ' + found[4].frame, "upper hand#2 upper");
+    const auto &base = robot.links[0].shapes[0], &ball = robot.links[2].shapes[0],
+               &block = robot.links[2].shapes[1];
+    // The ball is inside of its mesh, whose contact is nearness.
+    for (const auto& [answer, own] : {std::pair{found[1], ball}, {found[2], block}}) {
+      const auto [a, b] = link_motions(robot, {0, base.pose}, {2, own.pose}, path);
+      const TimeOfContact alone = time_of_contact(surfaces[base.mesh], a, surfaces[own.mesh], b);
+      EXPECT_EQ(alone.verdict, Verdict::intersecting);
+      EXPECT_EQ(answer.answer.verdict, own.mesh == ball.mesh ? Verdict::within : Verdict::intersecting);
+      EXPECT_EQ(answer.answer.time, alone.time);
+      EXPECT_EQ(answer.placed[1].pose(), b.at(alone.time.upper));
+    }
+  }
+  EXPECT_EQ(first_contacts(robot, surfaces, path).size(), 2u);
+  EXPECT_THROW(static_cast<void>(first_contacts(robot, {}, path)), InputError);
+  EXPECT_THROW(static_cast<void>(first_contacts(robot, surfaces, {})), InputError);
 }
 
 TEST(robot, where_nothing_moves_contact_is_proved_too) {

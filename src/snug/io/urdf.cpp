@@ -199,11 +199,16 @@ class RobotReader {
     if (filename.starts_with(file)) path = filename.substr(file.size());
     if (path.find("://") != std::string::npos || path.empty() || path.find('\0') != std::string::npos)
       static_cast<void>(path_inside(path, name_, what));  // says why not
-    const auto absolute = [](const fs::path& of) {
-      return fs::absolute(of.empty() ? fs::path(".") : of).lexically_normal();
+    const auto plain = [](const fs::path& of) {
+      return (of.empty() ? fs::path(".") : of).lexically_normal();
     };
-    const fs::path root = absolute(options_.root.empty() ? folder_ : fs::path(options_.root)),
-                   place = absolute(folder_ / path);
+    fs::path root = plain(options_.root.empty() ? folder_ : fs::path(options_.root)),
+             place = plain(folder_ / path);
+    // A page has no current folder, and names tell enough but here.
+    if (root.is_absolute() != place.is_absolute() || *root.begin() == "..") {
+      root = fs::absolute(root).lexically_normal();
+      place = fs::absolute(place).lexically_normal();
+    }
     const fs::path inside = place.lexically_relative(root);
     if (inside.empty() || *inside.begin() == "..") {
       fail_in_file(name_,
@@ -403,7 +408,7 @@ class RobotReader {
     if (!options_.notes || outer_ == 0) return;
     options_.notes(name_ + ": " + std::to_string(outer_) +
                    " cylinders and spheres are inside of polyhedra that go beyond them by at most " +
-                   text_at_most(*std::ranges::max_element(robot_.outward), true));
+                   text_at_most(*std::max_element(robot_.outward.begin(), robot_.outward.end()), true));
   }
 
   const std::string& name_;

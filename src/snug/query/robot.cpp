@@ -1,11 +1,14 @@
 #include <snug/robot.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <set>
 
 #include <support/error.h>
 #include <support/number.h>
+#include <support/parallel.h>
+#include <support/run.h>
 
 namespace snug {
 namespace {
@@ -33,7 +36,7 @@ std::uint32_t above(const Robot& robot, std::uint32_t link) {
 std::vector<std::uint32_t> joints_between(const Robot& robot, std::uint32_t from, std::uint32_t to) {
   std::vector<std::uint32_t> joints;
   for (; to != from; to = above(robot, to)) joints.push_back(*robot.links[to].joint);
-  std::ranges::reverse(joints);
+  std::reverse(joints.begin(), joints.end());
   return joints;
 }
 
@@ -143,6 +146,75 @@ std::pair<Trajectory, Trajectory> link_motions(const Robot& robot, const std::pa
     return moves ? result : Trajectory(result.start());
   };
   return {motion(a), motion(b)};
+}
+
+namespace {
+
+struct ShapePair {
+  PartPair links;
+  std::array<std::size_t, 2> shapes;
+};
+
+std::vector<ShapePair> shape_pairs(const Robot& robot, bool joined) {
+  std::vector<ShapePair> pairs;
+  for (const PartPair& links : pairs_to_check(robot, joined)) {
+    for (std::size_t a = 0; a < robot.links[links.a].shapes.size(); ++a) {
+      for (std::size_t b = 0; b < robot.links[links.b].shapes.size(); ++b) pairs.push_back({links, {a, b}});
+    }
+  }
+  return pairs;
+}
+
+std::string shape_name(const Robot::Link& link, std::size_t shape) {
+  return link.shapes.size() == 1 ? link.name : link.name + '#' + std::to_string(shape + 1);
+}
+
+LinkContact first_contact(const Robot& robot, const ShapePair& pair, std::span<const Surface> surfaces,
+                          std::span<const std::vector<double>> positions, const LinkContactsOptions& options,
+                          const Run& run) {
+  const Robot::Link &link_a = robot.links[pair.links.a], &link_b = robot.links[pair.links.b];
+  const Robot::Shape &shape_a = link_a.shapes[pair.shapes[0]], &shape_b = link_b.shapes[pair.shapes[1]];
+  const auto [motion_a, motion_b] =
+      link_motions(robot, {pair.links.a, shape_a.pose}, {pair.links.b, shape_b.pose}, positions);
+  const Surface &a = surfaces[shape_a.mesh], &b = surfaces[shape_b.mesh];
+  TimeOfContactOptions how;
+  if (options.tolerance) how.tolerance = options.tolerance(std::max(a.size(), b.size()));
+  TimeOfContact answer = time_of_contact(a, motion_a, b, motion_b, how, run);
+  // A mesh that goes beyond its shape meets others before the shape does.
+  const bool goes_beyond = robot.outward[shape_a.mesh] > 0 || robot.outward[shape_b.mesh] > 0;
+  if (answer.verdict == Verdict::intersecting && goes_beyond) answer.verdict = Verdict::within;
+  const double time = std::isfinite(answer.time.upper) ? answer.time.upper : 0;
+  return {shape_name(link_a, pair.shapes[0]),
+          shape_name(link_b, pair.shapes[1]),
+          robot.links[common_link(robot, pair.links.a, pair.links.b)].name,
+          {a.at(motion_a.at(time)), b.at(motion_b.at(time))},
+          std::move(answer)};
+}
+
+}  // namespace
+
+std::vector<LinkContact> first_contacts(const Robot& robot, std::span<const Surface> surfaces,
+                                        std::span<const std::vector<double>> positions,
+                                        const LinkContactsOptions& options, const Run& run) {
+  require_value(surfaces.size() == robot.meshes.size(), "robot: give a surface for each mesh");
+  require_value(!positions.empty(), "robot: give positions of the joints, once or more often");
+  const WorkMonitor& monitor = monitor_of(run);
+  const WorkMonitor quiet = stop_only(run);
+  for (const Surface& surface : surfaces) surface.prepare({.threads = run.threads, .monitor = &quiet});
+  const std::vector<ShapePair> pairs = shape_pairs(robot, options.joined);
+  std::vector<std::optional<LinkContact>> found(pairs.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for(pairs.size(), run.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      found[i] = first_contact(robot, pairs[i], surfaces, positions, options,
+                               {.threads = 1, .monitor = &quiet, .max_splits = run.max_splits});
+      monitor.report(static_cast<double>(++done) / static_cast<double>(pairs.size()));
+    }
+  });
+  std::vector<LinkContact> contacts;
+  contacts.reserve(found.size());
+  for (std::optional<LinkContact>& each : found) contacts.push_back(*std::move(each));
+  return contacts;
 }
 
 }  // namespace snug
