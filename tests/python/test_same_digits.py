@@ -128,7 +128,7 @@ def test_surfaces(name, scheme, tmp_path):
     hits = surface.ray(points, towards, query="all")
     flat = [(i, hit) for i, one in enumerate(output_of("ray", file, *how, "--rays", "-", "--all", stdin=rays)["results"]) for hit in one["hits"]]
     assert [i for i, _ in flat] == hits.ray.tolist()
-    for member in ("t", "certified", "side", "point", "error", "u", "v"):
+    for member in ("t", "certified", "side", "point", "error", "u", "v", "normal"):
         assert [hit[member] for _, hit in flat] == plain(getattr(hits, member)), member
     at = near[: 50 * FEW]
     places = "".join(f"{f} {u!r} {v!r} {c}\n" for f, u, v, c in zip(at.face.tolist(), at.u.tolist(), at.v.tolist(), at.corner.tolist()))

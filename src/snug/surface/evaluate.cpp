@@ -220,6 +220,9 @@ std::optional<PatchId> patch_at(const LimitSurface& surface, const Place& at) {
 std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Place& at, const Motion& pose) {
   const SurfacePoint point = evaluate(surface, at);
   if (!point.normal) return std::nullopt;
+  const bool turned =
+      pose.row(0) != Vector3{1, 0, 0} || pose.row(1) != Vector3{0, 1, 0} || pose.row(2) != Vector3{0, 0, 1};
+  if (!turned) return SurfaceNormal{*point.normal, point.normal_error};
   SurfaceNormal result{normalized(pose.rotate(*point.normal)), {}};
   // derivations/rounding.md, "Normals".
   const double defect = pose.defect();
