@@ -39,7 +39,7 @@ def names_of_doors():
     python = re.findall(r'"([A-Za-z]\w*)"', exported) + [f"Surface.{name}" for name in methods]
     types = text_of("web/package/snug.d.ts")
     javascript = []
-    for interface, before in (("Surface", "Surface."), ("SnugModule", "")):
+    for interface, before in (("Surface", "Surface."), ("Robot", "Robot."), ("SnugModule", "")):
         body = re.search(rf"^export interface {interface} {{(.*?)^}}", types, re.MULTILINE | re.DOTALL).group(1)
         javascript += [before + name for name in re.findall(r"^  ([a-z]\w*)\(", body, re.MULTILINE)]
     return {"C++": functions + classes, "command": commands, "Python": python, "JavaScript": javascript}

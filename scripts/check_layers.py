@@ -3,7 +3,7 @@
 
 Checked: each #include <snug/...> against the order below, that it exists, that snug's headers are included in that form
 only, #pragma once, that public headers include public ones and the C++ standard library alone, that src/snug/CMakeLists.txt
-lists every source, and that no room includes a library it should not know. `--self-test` plants each fault and expects it
+lists every source, that no room includes a library it should not know, and that the browser's library has what is used of std::ranges. `--self-test` plants each fault and expects it
 found.
 """
 
@@ -122,9 +122,24 @@ def check_public(root):
             if quoted or not (public(name) or re.fullmatch(r"[a-z_]+", name))]
 
 
+def check_browser(root):
+    """Algorithms of std::ranges that the browser's old library lacks: it has those of its shim alone."""
+    shim = root / "web/shims/standard_library.h"
+    known = set(re.findall(r"^(?:auto|bool|void) (\w+)\(", shim.read_text(encoding="utf-8"), re.MULTILINE)) if shim.exists() else set()
+    faults = []
+    for folder in ("include", "src", "web"):
+        for path in cpp_files(root / folder):
+            if path == shim or any(path.is_relative_to(root / "src/snug" / room) for room in SEPARATE):
+                continue
+            text = path.read_text(encoding="utf-8")
+            faults += [f"{path.relative_to(root)}:{text.count(chr(10), 0, m.start()) + 1}: std::ranges::{m[1]} is not in {shim.relative_to(root)}"
+                       for m in re.finditer(r"std::ranges::(\w+)\(", text) if m[1] not in known]
+    return faults
+
+
 def check_tree(root):
     """Faults of a whole checkout, as lines "file:line: what"."""
-    faults = check_public(root)
+    faults = check_public(root) + check_browser(root)
     for folder in [root / "src" / SHARED, *sorted((root / "src/snug").iterdir())]:
         if folder.is_dir() and cpp_files(folder):
             if folder.name in ORDER:
@@ -173,7 +188,8 @@ GOOD_TREE = {
     "src/support/a.h": "#pragma once\n#include <vector>\n#include <snug/p.h>\n",
     "src/support/a.cpp": "#include <support/a.h>\n#include <thread>\n",
     "src/snug/mesh/m.h": "#pragma once\n#include <support/a.h>\n",
-    "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\n",
+    "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\nauto i = std::ranges::find(list, 1);\n",
+    "web/shims/standard_library.h": "auto find(Range&& range, const T& value) {\n",
     "src/snug/query/q.cpp": "#include <snug/mesh/m.h>\n",
     "src/snug/query/q.h": "#pragma once\n",
     "tests/query/trajectory_test.cpp": "#include <snug/query/q.h>\n",
@@ -204,6 +220,7 @@ BAD_FILES = [
     ("src/snug/query/q.cpp", "#include <nlohmann/json.hpp>\n", "query may not include <nlohmann"),
     ("src/snug/mesh/m.cpp", "#include <snug/mesh/gone.h>\n", "does not exist"),
     ("src/snug/mesh/m.cpp", "#include <snug/gone.h>\n", "does not exist"),
+    ("src/snug/mesh/m.cpp", "\nstd::ranges::reverse(list);\n", "m.cpp:2: std::ranges::reverse is not in web/shims"),
     ("src/snug/mesh/n.cpp", "\n", "lacks mesh/n.cpp"),
     ("src/snug/independence/k.cpp", "#include <snug/io/r.h>\n", "independence may not include io"),
     ("src/snug/independence/l.cpp", "\n", "src/snug/independence/CMakeLists.txt: lacks l.cpp"),

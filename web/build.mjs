@@ -1,16 +1,16 @@
 // Makes the package and the page from the module: node web/build.mjs MODULE-FOLDER OUTPUT-FOLDER
 //
-//   OUTPUT/package/   snug.js, snug.wasm, snug.d.ts and what else npm publishes
+//   OUTPUT/package/   snug.js, snug.wasm, snug.simd.wasm, snug.d.ts and what else npm publishes
 //   OUTPUT/snug.html  the page: one file, which needs no network
 
 import { build } from "esbuild";
 import { cp, mkdir, readFile, rm, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [module_folder, output] = process.argv.slice(2);
-const wasm = join(module_folder, "snug.wasm");
 
 const common = {
   bundle: true,
@@ -34,20 +34,25 @@ async function makePackage() {
   await rm(folder, { recursive: true, force: true });
   await mkdir(folder, { recursive: true });
   await writeFile(join(folder, "snug.js"), await bundled("package/snug.js", { format: "esm", target: "es2022", external: ["node:fs/promises"] }));
-  await cp(wasm, join(folder, "snug.wasm"));
+  // One glue serves both modules.
+  const glue = async (name) => (await readFile(join(module_folder, `${name}.mjs`), "utf8")).replaceAll(`${name}.wasm`, "");
+  if ((await glue("snug")) !== (await glue("snug.simd"))) throw new Error("snug.mjs and snug.simd.mjs differ: the module for vectors needs its own glue");
+  for (const name of ["snug.wasm", "snug.simd.wasm"]) await cp(join(module_folder, name), join(folder, name));
   for (const name of ["snug.d.ts", "worker.js", "worker.d.ts", "thread.js", "package.json", "README.md"]) await cp(join(here, "package", name), join(folder, name));
   await cp(join(here, "../LICENSE"), join(folder, "LICENSE"));
 }
 
+// The page has the module for vectors, zipped: a browser that unzips knows these.
+const newer = { target: ["chrome95", "firefox113", "safari16.4"] };
 // Where a script stands inside a page, nothing may look like its end.
 const inside = (text) => text.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 
 async function makePage() {
   const parts = {
     style: await readFile(join(here, "page/style.css"), "utf8"),
-    wasm: (await readFile(wasm)).toString("base64"),
-    engine: inside(await bundled("page/engine.js", { format: "iife", define: { "import.meta.url": '"file:///"' }, external: ["node:fs/promises"] })),
-    main: inside(await bundled("page/main.js", { format: "esm" })),
+    wasm: gzipSync(await readFile(join(module_folder, "snug.simd.wasm")), { level: 9 }).toString("base64"),
+    engine: inside(await bundled("page/engine.js", { ...newer, format: "iife", define: { "import.meta.url": '"file:///"' }, external: ["node:fs/promises"] })),
+    main: inside(await bundled("page/main.js", { ...newer, format: "esm" })),
   };
   const page = await readFile(join(here, "page/index.html"), "utf8");
   await writeFile(join(output, "snug.html"), page.replace(/\/\*(style|wasm|engine|main)\*\//g, (_, name) => parts[name]));

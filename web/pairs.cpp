@@ -6,11 +6,10 @@
 
 #include "fields.h"
 #include "part.h"
+#include "poses.h"
 
 namespace snug::web {
 namespace {
-
-// Poses: twelve numbers, or nothing for the identity.
 
 std::array<double, 12> twelve(const val& numbers) {
   if (!numbers.isArray() && numbers["BYTES_PER_ELEMENT"].isUndefined()) {
@@ -26,9 +25,29 @@ std::array<double, 12> twelve(const val& numbers) {
   std::copy(read.begin(), read.end(), matrix.begin());
   return matrix;
 }
+}  // namespace
+
 Motion motion_of(const val& numbers) {
   return numbers.isUndefined() || numbers.isNull() ? Motion() : Motion::from_3x4(twelve(numbers));
 }
+
+CollideOptions collide_options(const val& options) {
+  CollideOptions how;
+  how.tolerance = option<double>(options, "tolerance");
+  how.margin = option<double>(options, "margin").value_or(0);
+  how.solid = option<bool>(options, "solid").value_or(false);
+  how.measure = option<bool>(options, "measure").value_or(false);
+  how.prove_contact = option<bool>(options, "proveContact").value_or(false);
+  return how;
+}
+DistanceOptions distance_options(const val& options) {
+  return {.absolute = option<double>(options, "absolute"),
+          .relative = option<double>(options, "relative"),
+          .solid = option<bool>(options, "solid").value_or(false)};
+}
+
+namespace {
+
 // {axis, degrees, move}: rotated about an axis through the origin, then moved; `after` another pose.
 val make_pose(const val& parts) {
   return guarded([&] {
@@ -67,20 +86,6 @@ class Proof {
   Certificate certificate_;
 };
 
-CollideOptions collide_options(const val& options) {
-  CollideOptions how;
-  how.tolerance = option<double>(options, "tolerance");
-  how.margin = option<double>(options, "margin").value_or(0);
-  how.solid = option<bool>(options, "solid").value_or(false);
-  how.measure = option<bool>(options, "measure").value_or(false);
-  how.prove_contact = option<bool>(options, "proveContact").value_or(false);
-  return how;
-}
-DistanceOptions distance_options(const val& options) {
-  return {.absolute = option<double>(options, "absolute"),
-          .relative = option<double>(options, "relative"),
-          .solid = option<bool>(options, "solid").value_or(false)};
-}
 val collide_parts(const Part& part_a, const Part& part_b, const val& options) {
   return guarded([&] {
     const PlacedSurface a(part_a.surface(), motion_of(options["poseA"]));

@@ -8,6 +8,36 @@
 #include <cmath>
 
 namespace snug::web {
+
+std::uint32_t index_of(double number, const char* what) {
+  if (!(number >= 0 && number < 0x1p32 - 1 && number == std::floor(number))) {
+    throw InputError(InputProblem::value, std::string(what) + ": give whole numbers from 0 to 2^32 - 2");
+  }
+  return static_cast<std::uint32_t>(number);
+}
+
+std::vector<double> numbers_of(const val& object, const char* name, std::size_t each) {
+  std::vector<double> numbers;
+  if (given(object, name)) numbers = emscripten::convertJSArrayToNumberVector<double>(object[name]);
+  if (numbers.size() % each != 0) {
+    throw InputError(InputProblem::value, std::string(name) + ": give " + std::to_string(each) +
+                                              " numbers each; " + std::to_string(numbers.size()) +
+                                              " are not a multiple");
+  }
+  return numbers;
+}
+
+ReadOptions reading_of(const val& options, std::vector<std::string>& notes) {
+  const auto file = [files = given(options, "files") ? options["files"]
+                                                     : val::undefined()](const std::string& path) {
+    const val bytes = files.isUndefined() ? files : files(path);
+    if (bytes.isUndefined())
+      throw InputError(InputProblem::unreadable, path + ": this file is not among the option `files`");
+    return bytes.as<std::string>();
+  };
+  return {.notes = [&](const std::string& line) { notes.push_back(line); }, .other_file = file};
+}
+
 namespace {
 
 const char* name_of_boundary(BoundaryRule rule) {
@@ -27,25 +57,6 @@ Enum named(const std::string& word, std::size_t count, const char* what, const N
     known += (i == 0 ? "" : i + 1 < count ? ", " : " or ") + each;
   }
   throw InputError(InputProblem::value, std::string(what) + ": '" + word + "' is not " + known);
-}
-
-// What is no index, such as a negative number or a fraction, is refused.
-std::uint32_t index_of(double number, const char* what) {
-  if (!(number >= 0 && number < 0x1p32 - 1 && number == std::floor(number))) {
-    throw InputError(InputProblem::value, std::string(what) + ": give whole numbers from 0 to 2^32 - 2");
-  }
-  return static_cast<std::uint32_t>(number);
-}
-
-std::vector<double> numbers_of(const val& object, const char* name, std::size_t each) {
-  std::vector<double> numbers;
-  if (given(object, name)) numbers = emscripten::convertJSArrayToNumberVector<double>(object[name]);
-  if (numbers.size() % each != 0) {
-    throw InputError(InputProblem::value, std::string(name) + ": give " + std::to_string(each) +
-                                              " numbers each; " + std::to_string(numbers.size()) +
-                                              " are not a multiple");
-  }
-  return numbers;
 }
 
 // {points, triangles} or {points, offsets, corners}, {creases, sharpCorners, holes}: all flat.
@@ -103,8 +114,7 @@ val handed(std::shared_ptr<Part> part) {
 val read_part(const std::string& bytes, const std::string& name, const val& options) {
   return guarded([&] {
     std::vector<std::string> notes;
-    ControlMesh mesh =
-        parse_mesh(bytes, name, {.notes = [&](const std::string& line) { notes.push_back(line); }});
+    ControlMesh mesh = parse_mesh(bytes, name, reading_of(options, notes));
     return handed(std::make_shared<Part>(std::move(mesh), name, options, std::move(notes)));
   });
 }

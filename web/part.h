@@ -29,4 +29,11 @@ class Part {
   Surface surface_;
 };
 
+// How a file is read: what others it names come from options.files(path), lines about it go to `notes`.
+ReadOptions reading_of(const val& options, std::vector<std::string>& notes);
+
+// What is no index, such as a negative number or a fraction, is refused; so is a list that is no multiple of `each`.
+std::uint32_t index_of(double number, const char* what);
+std::vector<double> numbers_of(const val& object, const char* name, std::size_t each);
+
 }  // namespace snug::web

@@ -19,6 +19,7 @@
 #include <snug/inspect.h>
 #include <snug/measure.h>
 #include <snug/ray.h>
+#include <snug/scene.h>
 #include <snug/tessellate.h>
 #include <snug/time_of_contact.h>
 
@@ -107,7 +108,18 @@ inline constexpr const char *outcome =
 
 }  // namespace fields
 
-// Two surfaces.
+// Two surfaces, or many.
+
+template <>
+inline constexpr auto fields_of<SceneCounts> = std::tuple{
+    Field{"pairs", &SceneCounts::pairs, "All pairs that were asked about."},
+    Field{"separated_by_boxes", &SceneCounts::separated_by_boxes, "Proved by boxes alone, and not listed."},
+    Field{"separated", &SceneCounts::separated,
+          "Of the others, by their verdicts; distances beyond the limit are separated."},
+    Field{"within", &SceneCounts::within, "Likewise."},
+    Field{"intersecting", &SceneCounts::intersecting, "Likewise; of distances, proved contact."},
+    Field{"undecided", &SceneCounts::undecided, "Likewise."},
+};
 
 template <>
 inline constexpr auto fields_of<SearchStats> = std::tuple{

@@ -131,12 +131,12 @@ std::string interface_of(const std::string& name) {
 std::string script_part() {
   return interface_of<SearchStats>("SearchStats") + interface_of<Collision>("Collision") +
          interface_of<Distance>("Distance") + interface_of<Penetration>("Penetration") +
-         interface_of<TimeOfContact>("TimeOfContact") + interface_of<ClearanceSpan>("ClearanceSpan") +
-         interface_of<Clearance>("Clearance") + interface_of<PatchContact>("PatchContact") +
-         interface_of<ContactRegion>("ContactRegion") + interface_of<CurveBox>("CurveBox") +
-         interface_of<IntersectionCurve>("IntersectionCurve") + interface_of<ContactArea>("ContactArea") +
-         interface_of<OpenBox>("OpenBox") + interface_of<Contacts>("Contacts") +
-         interface_of<fields::SelfContactStats>("SelfContactStats") +
+         interface_of<SceneCounts>("SceneCounts") + interface_of<TimeOfContact>("TimeOfContact") +
+         interface_of<ClearanceSpan>("ClearanceSpan") + interface_of<Clearance>("Clearance") +
+         interface_of<PatchContact>("PatchContact") + interface_of<ContactRegion>("ContactRegion") +
+         interface_of<CurveBox>("CurveBox") + interface_of<IntersectionCurve>("IntersectionCurve") +
+         interface_of<ContactArea>("ContactArea") + interface_of<OpenBox>("OpenBox") +
+         interface_of<Contacts>("Contacts") + interface_of<fields::SelfContactStats>("SelfContactStats") +
          interface_of<SelfContactPair>("SelfContactPair") + interface_of<SelfContact>("SelfContact") +
          interface_of<ClosestPoint>("ClosestPoint") + interface_of<RayHit>("RayHit") +
          interface_of<RayHits>("RayHits") + interface_of<SurfacePoint>("SurfacePoint") +

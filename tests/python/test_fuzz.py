@@ -3,6 +3,9 @@
 SNUG_FUZZ=N runs N cases of each.
 """
 
+import pathlib
+import tempfile
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -110,6 +113,29 @@ def test_contacts_and_meshes(pose, within, error, mesh):
     attempt(lambda: snug.inspect(CUBE, mesh))
     attempt(lambda: SOLID.envelope(error, clearance=within, gap=mesh, max_splits=100))
     attempt(lambda: SOLID.topology_of(within, error))
+
+
+LINK = "<link name='{0}'><collision><origin xyz='0.5 0 0'/><geometry><box size='0.9 0.2 0.2'/></geometry></collision></link>"
+JOINT = (
+    "<joint name='{0}' type='continuous'><parent link='{1}'/><child link='{2}'/><origin xyz='1 0 0'/><axis xyz='0 0 1'/></joint>"
+)
+ARM_TEXT = "<robot name='arm'>" + "".join(map(LINK.format, "abc")) + JOINT.format("x", "a", "b") + JOINT.format("y", "b", "c") + "</robot>"
+positions = st.one_of(anything, st.dictionaries(st.sampled_from(["x", "y", "z"]), st.one_of(numbers, anything), max_size=3))
+
+
+@given(positions, st.one_of(anything, st.lists(positions, max_size=3)), anything, anything)
+def test_robots(at, path, tolerance, joined):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "arm.urdf"
+        file.write_text(ARM_TEXT)
+        arm = snug.urdf(file)
+        attempt(lambda: snug.urdf(file, packages=at, root=path, primitive_error=tolerance, visual=joined))
+        attempt(lambda: snug.read_assembly(at, scheme=path, weld=tolerance, threads=joined))
+    attempt(lambda: arm.poses(at))
+    for _, _, first in attempt(lambda: arm.first_contacts(path, tolerance=tolerance, joined=joined, max_splits=100)) or ():
+        assert first.lower <= seen(first).upper
+    for _, _, first in attempt(lambda: arm.first_contacts([{}, at], max_splits=100, threads=joined)) or ():
+        assert first.lower <= first.upper
 
 
 @given(anything, anything, st.sampled_from(["nearest", "any", "all"]), st.booleans())

@@ -14,6 +14,7 @@ export class SnugError extends Error {
   readonly problem: "unreadable" | "refused" | "pose" | "value" | "unrepresentable" | "memory" | "interrupted";
 }
 
+export type Data = string | ArrayBuffer | ArrayBufferView;
 export interface ReadOptions {
   /**
    * Default, auto: flat for STL and glTF unless `sharp` is given; else that of the file if it names one; else loop if all
@@ -28,6 +29,8 @@ export interface ReadOptions {
   weld?: number;
   /** Bound every patch at the first query: later ones are faster. */
   tight?: boolean;
+  /** Other files that this one names, by their paths in its folder; in a worker an object. */
+  files?: Record<string, Data> | ((path: string) => Data | undefined);
 }
 
 /** Where a point lies: parameters on a face; in a dual scheme, on a vertex. */
@@ -115,6 +118,28 @@ export interface ManyCollisions extends ManyDistances {
   /** 0 separated, 1 within, 2 intersecting, 3 undecided. */
   verdicts: Uint8Array;
 }
+/** Poses default to the identity. */
+export interface Part {
+  surface: Surface;
+  pose?: Pose;
+}
+/** Two parts by their indices each, instead of all pairs; and two and a margin each. */
+export interface SceneOptions {
+  pairs?: Numbers;
+  margins?: Numbers;
+}
+/** Answers to pairs that boxes do not separate. */
+export interface SceneAnswer<Answer> extends SceneCounts {
+  results: (Answer & { a: number; b: number })[];
+}
+/** Links, or "link#2" where one has several shapes; witnesses are in the frame of the last link that moves both. */
+export interface LinkContact extends TimeOfContact {
+  a: string;
+  b: string;
+  frame: string;
+}
+/** Radians or metres, by joint; others are at 0, or at the limit nearest to it. */
+export type Positions = Record<string, number>;
 /** Surfaces that move through a list of poses, one unit of time from each to the next. */
 export interface MotionOptions extends CallOptions {
   motionA?: readonly Pose[];
@@ -222,6 +247,14 @@ export interface Penetration {
   /** Contains the depth, in mesh units: no translation shorter than the lower end separates the solids. */ depth: Interval;
   /** Added to B's pose it separates them: proved. Zero if they are separated as they are. */ translation: Point;
   /** 'complete', 'budget-spent' or 'at-rounding'; the answer holds in any case. */ outcome: Outcome;
+}
+export interface SceneCounts {
+  /** All pairs that were asked about. */ pairs: number;
+  /** Proved by boxes alone, and not listed. */ separatedByBoxes: number;
+  /** Of the others, by their verdicts; distances beyond the limit are separated. */ separated: number;
+  /** Likewise. */ within: number;
+  /** Likewise; of distances, proved contact. */ intersecting: number;
+  /** Likewise. */ undecided: number;
 }
 export interface TimeOfContact {
   /** 'separated': they never meet. 'within': at the upper end of `time` they are at most the tolerance apart. 'intersecting': they have a common point at some time in `time`. 'undecided': none of these was shown. */ verdict: Verdict;
@@ -481,9 +514,36 @@ export interface Surface {
   delete(): void;
 }
 
+/** Links in a tree of joints, in metres and radians. It lives outside of JavaScript's memory: delete() it. */
+export interface Robot {
+  readonly name: string;
+  /** Parents first. */
+  readonly links: string[];
+  /** Limits of the joints that have a position of their own. */
+  readonly joints: Record<string, Interval>;
+  /** How far meshes of cylinders and spheres go beyond them, at most. */
+  readonly outward: number;
+  /** Of each link, in the frame of the root. */
+  poses(positions?: Positions): Record<string, number[]>;
+  /**
+   * Which links meet along a path of the joints, at constant speeds from each list of positions to the next? One answer for each two
+   * shapes that can move against each other; joined: also of links that a joint joins. tolerance: 0.1 % of the larger mesh.
+   */
+  firstContacts(path: readonly Positions[], options?: { tolerance?: number; joined?: boolean } & CallOptions): LinkContact[];
+  delete(): void;
+}
+
 export interface SnugModule {
-  /** Reads OBJ, OFF, PLY, STL, USD or glTF; the ending of the name says which. */
-  read(name: string, data: string | ArrayBuffer | ArrayBufferView, options?: ReadOptions): Surface;
+  /** Reads OBJ, OFF, PLY, STL, USD, glTF or 3MF; the ending of the name says which. */
+  read(name: string, data: Data, options?: ReadOptions): Surface;
+  /** The meshes of a file apart, and where it places them (glTF, 3MF, USD); instances share their surface. */
+  readAssembly(name: string, data: Data, options?: ReadOptions): { name: string; surface: Surface; pose: number[] }[];
+  /**
+   * A robot in URDF; its meshes are among `files`, those of package://NAME/path under NAME/path. srdf: pairs that may touch.
+   * visual: what is seen instead of what collides. primitiveError: how far meshes of cylinders and spheres may go beyond them, of the
+   * radius (0.002).
+   */
+  urdf(name: string, data: Data, options?: { srdf?: Data; visual?: boolean; root?: string; primitiveError?: number } & ReadOptions): Robot;
   fromArrays(arrays: MeshArrays, options?: ReadOptions): Surface;
   /** The triangles of a BufferGeometry of three.js: flat, and equal vertices merged, unless the options say otherwise. */
   fromGeometry(geometry: Geometry, options?: ReadOptions): Surface;
@@ -491,6 +551,9 @@ export interface SnugModule {
   inspect(arrays: MeshArrays, options?: { scheme?: Scheme | "auto" }): Inspection;
   collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
   distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;
+  /** Which of many parts touch? Like collide() and distance() of each pair, up to a limit; margins: where another one holds. */
+  collideScene(parts: readonly Part[], options?: CollideOptions & SceneOptions): SceneAnswer<Collision>;
+  distanceScene(parts: readonly Part[], limit: number, options?: DistanceOptions & SceneOptions): SceneAnswer<Distance>;
   /** For many poses of B, twelve numbers each: two to ten times as fast as one by one. */
   collideMany(a: Surface, b: Surface, posesB: Numbers, options?: CollideOptions): ManyCollisions;
   distanceMany(a: Surface, b: Surface, posesB: Numbers, options?: DistanceOptions): ManyDistances;
@@ -519,5 +582,8 @@ export interface SnugModule {
   textAtLeast(x: number): string;
 }
 
-/** Loads the module; `wasm`: the bytes of snug.wasm, where they are not beside snug.js. */
-export default function Snug(options?: { wasm?: ArrayBuffer | Uint8Array }): Promise<SnugModule>;
+/**
+ * Loads the module: snug.simd.wasm where the engine has vectors and that file is there, else snug.wasm, unless `simd` says which; both
+ * give the same bits. `wasm`: the bytes of either, where they are not beside snug.js.
+ */
+export default function Snug(options?: { wasm?: ArrayBuffer | Uint8Array; simd?: boolean }): Promise<SnugModule>;

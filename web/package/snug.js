@@ -12,7 +12,7 @@ export class SnugError extends Error {
 }
 
 function checked(answer) {
-  if (answer !== null && typeof answer === "object" && answer.problem !== undefined) {
+  if (typeof answer?.problem === "string" && "message" in answer) {
     throw new SnugError(answer.problem, answer.message);
   }
   return answer;
@@ -24,6 +24,13 @@ function bytesOf(data) {
   if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
   throw new TypeError("read: give a string, an ArrayBuffer or a Uint8Array");
 }
+// Of reading: `files`, by a function of their paths or an object, becomes a function to bytes.
+function reading({ files, srdf, ...rest }) {
+  if (srdf !== undefined) rest.srdf = bytesOf(srdf);
+  if (files === undefined) return rest;
+  const known = typeof files === "function" ? null : new Map(Object.entries(files)), find = (path) => (known === null ? files(path) : known.get(path));
+  return { ...rest, files: (path) => { const data = find(path); return data === undefined ? data : bytesOf(data); } };
+}
 
 // Of a BufferGeometry of three.js; its accessors know of strides and integers that stand for fractions.
 export function arraysOf(geometry) {
@@ -34,8 +41,11 @@ export function arraysOf(geometry) {
   return { points, triangles: geometry.index?.array ?? Uint32Array.from({ length: position.count }, (_, i) => i) };
 }
 
-async function wasmBeside(url) {
-  const place = new URL("./snug.wasm", url);
+// A function with a vector of 128 bits: does this engine know them?
+const hasVectors = () => WebAssembly.validate(Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11));
+
+async function wasmBeside(url, name) {
+  const place = new URL(name, url);
   if (place.protocol === "file:" && typeof process !== "undefined") {
     const { readFile } = await import("node:fs/promises");
     return readFile(place);
@@ -44,10 +54,21 @@ async function wasmBeside(url) {
   if (!answer.ok) throw new Error(`${place}: ${answer.status} ${answer.statusText}`);
   return answer.arrayBuffer();
 }
+// The module for vectors, where it is known and there.
+async function wasmFor(url, simd) {
+  if (simd ?? hasVectors()) {
+    try {
+      return await wasmBeside(url, "./snug.simd.wasm");
+    } catch (error) {
+      if (simd) throw error;
+    }
+  }
+  return wasmBeside(url, "./snug.wasm");
+}
 
 /** Loads the module. */
-export default async function Snug({ wasm } = {}) {
-  const module = await load({ wasmBinary: wasm ?? (await wasmBeside(import.meta.url)) });
+export default async function Snug({ wasm, simd } = {}) {
+  const module = await load({ wasmBinary: wasm ?? (await wasmFor(import.meta.url, simd)) });
 
   class Surface {
     #part;
@@ -76,6 +97,29 @@ export default async function Snug({ wasm } = {}) {
       this.#part = null;
     }
   }
+
+  class Robot {
+    #robot;
+    constructor(robot) {
+      this.#robot = robot;
+      for (const name of ["name", "links", "joints", "outward"]) this[name] = robot[name];
+    }
+    #made() {
+      if (this.#robot === null) throw new TypeError("this Robot has been deleted");
+      return this.#robot;
+    }
+    poses(positions = {}) {
+      return checked(this.#made().poses(positions));
+    }
+    firstContacts(path, options = {}) {
+      return checked(this.#made().firstContacts(path, options));
+    }
+    delete() {
+      this.#robot?.delete();
+      this.#robot = null;
+    }
+  }
+  const parts = (list) => list.map(({ surface, pose }) => ({ part: Surface.part(surface), pose }));
 
   // Of a surface, or of two and options; what is not given is as usual.
   const ask = (name, ...usual) => function (...given) {
@@ -106,13 +150,21 @@ export default async function Snug({ wasm } = {}) {
 
   return {
     Surface,
-    read: (name, data, options = {}) => new Surface(checked(module.read(bytesOf(data), name, options)).part),
+    Robot,
+    read: (name, data, options = {}) => new Surface(checked(module.read(bytesOf(data), name, reading(options))).part),
+    readAssembly: (name, data, options = {}) => {
+      const made = checked(module.readAssembly(bytesOf(data), name, reading(options))), surfaces = made.surfaces.map((part) => new Surface(part));
+      return made.parts.map((part) => ({ ...part, surface: surfaces[part.surface] }));
+    },
+    urdf: (name, data, options = {}) => new Robot(checked(module.urdf(bytesOf(data), name, reading(options))).robot),
     fromArrays: (arrays, options = {}) => new Surface(checked(module.fromArrays(arrays, options)).part),
     fromGeometry: (geometry, options = {}) =>
       new Surface(checked(module.fromArrays(arraysOf(geometry), { scheme: "flat", weld: 0, ...options })).part),
     inspect: (arrays, options = {}) => checked(module.inspect(arrays, options)),
     collide: both("collide"),
     distance: both("distance"),
+    collideScene: (list, options = {}) => checked(module.collideScene(parts(list), options)),
+    distanceScene: (list, limit, options = {}) => checked(module.distanceScene(parts(list), limit, options)),
     collideMany: many("collideMany"),
     distanceMany: many("distanceMany"),
     contacts: both("contacts"),

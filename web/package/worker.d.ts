@@ -1,4 +1,4 @@
-import type { SnugModule, Surface as OwnSurface } from "./snug.js";
+import type { Robot as OwnRobot, SnugModule, Surface as OwnSurface } from "./snug.js";
 
 /** What a call in a worker may also have among its options. */
 export interface Watched {
@@ -7,18 +7,26 @@ export interface Watched {
   /** Called with the fraction done. */
   progress?: (done: number) => void;
 }
-type Sent<T> = T extends OwnSurface ? Surface : T extends readonly (infer E)[] & { length: number } ? T : T;
+// Surfaces and robots of the worker in place of those here.
+type There<T> = T extends OwnSurface ? Surface
+  : T extends OwnRobot ? Robot
+  : T extends { surface: OwnSurface } ? Omit<T, "surface"> & { surface: Surface }
+  : T extends readonly (infer E extends { surface: OwnSurface })[] ? There<E>[]
+  : T;
+type Given<T> = There<T> extends infer Own ? (Own extends Surface | readonly unknown[] ? Own : Own extends object ? Own & Watched : Own) : never;
 type Later<Function> = Function extends (...args: infer Args) => infer Answer
-  ? (...args: { [I in keyof Args]: Args[I] extends OwnSurface ? Surface : Args[I] extends object | undefined ? (Args[I] & Watched) | Args[I] : Args[I] }) => Promise<Sent<Answer>>
+  ? (...args: { [I in keyof Args]: Given<Args[I]> }) => Promise<There<Answer>>
   : never;
 
 /** A surface in the worker. */
 export type Surface = { [Name in keyof OwnSurface]: OwnSurface[Name] extends (...args: any[]) => any ? Later<OwnSurface[Name]> : OwnSurface[Name] };
+/** A robot in the worker. */
+export type Robot = { [Name in keyof OwnRobot]: OwnRobot[Name] extends (...args: any[]) => any ? Later<OwnRobot[Name]> : OwnRobot[Name] };
 /** The functions of SnugModule, each with a promise of its answer. An aborted call ends the worker; another one takes its place, with the
  *  surfaces of before. */
 export type SnugInWorker = { [Name in keyof SnugModule]: Later<SnugModule[Name]> } & {
   /** Ends the worker. */
   close(): Promise<void>;
 };
-/** Starts a worker of the package's own, where a page or Node has them; `wasm` as in Snug(). */
-export default function SnugWorker(options?: { wasm?: ArrayBuffer | Uint8Array }): SnugInWorker;
+/** Starts a worker of the package's own, where a page or Node has them; options as in Snug(). */
+export default function SnugWorker(options?: { wasm?: ArrayBuffer | Uint8Array; simd?: boolean }): SnugInWorker;

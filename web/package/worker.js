@@ -72,15 +72,19 @@ export default function SnugWorker(options = {}) {
     }
   }
   // What only this side knows leaves the options; surfaces become their numbers.
-  function sent(target, name, args, keep) {
+  async function sent(target, name, args, keep) {
     const last = args.at(-1);
     const own = last !== null && typeof last === "object" && Object.getPrototypeOf(last) === Object.prototype;
     const { signal, progress, ...rest } = own ? last : {};
     const all = own ? [...args.slice(0, -1), rest] : args;
-    return ask({ target, name, args: all.map((each) => (each instanceof Surface ? { surface: each.number } : each)) }, { signal, progress, keep });
+    if (typeof rest.files === "function") throw new TypeError("files: give an object; a worker cannot call functions of yours");
+    const by = (each) => (each instanceof Kept ? { number: each.number } : each);
+    const packed = (each) => (Array.isArray(each) && each.some((part) => part?.surface) ? each.map((part) => ({ ...part, surface: by(part.surface) })) : by(each));
+    return ask({ target, name, args: all.map(packed) }, { signal, progress, keep });
   }
-  class Surface {
-    constructor(number, facts) {
+  // What lives in the worker.
+  class Kept {
+    constructor({ number, facts }) {
       this.number = number;
       Object.assign(this, facts);
     }
@@ -89,21 +93,30 @@ export default function SnugWorker(options = {}) {
       return sent(this.number, "delete", []);
     }
   }
-  const methods = ["cage", "samples", "tessellate", "enclosures", "enclosureShapes", "hull", "envelope", "evaluate", "closestPoint", "contains",
-    "ray", "selfContact", "limitToFaces", "measure", "subdivided", "write", "step"];
-  for (const name of methods) Surface.prototype[name] = function (...args) { return sent(this.number, name, args); };
-  const makes = (name) => async (...args) => {
-    const made = await sent(null, name, args, true);
-    return new Surface(made.surface, made.facts);
+  const having = (methods) => {
+    class Own extends Kept {}
+    for (const name of methods) Own.prototype[name] = function (...args) { return sent(this.number, name, args); };
+    return Own;
   };
+  const Surface = having(["cage", "samples", "tessellate", "enclosures", "enclosureShapes", "hull", "envelope", "evaluate", "closestPoint", "contains",
+    "ray", "selfContact", "limitToFaces", "measure", "subdivided", "write", "step"]);
+  const Robot = having(["poses", "firstContacts"]);
+  const makes = (name, Made) => async (...args) => new Made(await sent(null, name, args, true));
   const asks = (name) => (...args) => sent(null, name, args);
-  const names = ["inspect", "collide", "distance", "collideMany", "distanceMany", "contacts", "penetration", "timeOfContact", "clearance",
-    "deviation", "pose", "textAtMost", "textAtLeast"];
+  const names = ["inspect", "collide", "distance", "collideMany", "distanceMany", "collideScene", "distanceScene", "contacts", "penetration",
+    "timeOfContact", "clearance", "deviation", "pose", "textAtMost", "textAtLeast"];
   return {
     Surface,
-    read: makes("read"),
-    fromArrays: makes("fromArrays"),
-    fromGeometry: (geometry, how = {}) => makes("fromArrays")(arraysOf(geometry), { scheme: "flat", weld: 0, ...how }),
+    Robot,
+    read: makes("read", Surface),
+    readAssembly: async (...args) => {
+      const parts = await sent(null, "readAssembly", args, true), made = new Map();
+      for (const { surface } of parts) if (!made.has(surface.number)) made.set(surface.number, new Surface(surface));
+      return parts.map((part) => ({ ...part, surface: made.get(part.surface.number) }));
+    },
+    urdf: makes("urdf", Robot),
+    fromArrays: makes("fromArrays", Surface),
+    fromGeometry: (geometry, how = {}) => makes("fromArrays", Surface)(arraysOf(geometry), { scheme: "flat", weld: 0, ...how }),
     ...Object.fromEntries(names.map((name) => [name, asks(name)])),
     async close() {
       closed = true;

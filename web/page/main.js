@@ -781,8 +781,9 @@ async function start() {
   listenToDrops();
   try {
     engine = new Engine($("snug-engine").textContent);
-    const wasm = bytesOf($("snug-wasm").textContent.trim());
-    await engine.ask("start", { wasm }, [wasm.buffer]);
+    const zipped = new Blob([bytesOf($("snug-wasm").textContent.trim())]).stream();
+    const wasm = await new Response(zipped.pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+    await engine.ask("start", { wasm }, [wasm]);
     const data = JSON.parse($("snug-data").textContent);
     if (data) await openData(data);
     else await openExample(examples[0]);

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, extname, join, resolve } from "node:path";
 import { after, test } from "node:test";
@@ -15,7 +15,9 @@ const folder = resolve(process.env.SNUG_PACKAGE ?? join(root, "build/web/package
 const models = join(root, "examples/models");
 const { default: Snug, SnugError } = await import(pathToFileURL(join(folder, "snug.js")));
 
-const snug = await Snug();
+// By SNUG_SIMD, 1 or 0, the module with vectors or the plain one.
+const simd = process.env.SNUG_SIMD === undefined ? undefined : process.env.SNUG_SIMD === "1";
+const snug = await Snug({ simd });
 const scratch = mkdtempSync(join(tmpdir(), "snug-"));
 after(() => rmSync(scratch, { recursive: true }));
 
@@ -353,8 +355,7 @@ test("gives the digits of the native library to questions of every kind", () => 
       const own = surface.ray(points[i], towards[i], { query: "all" });
       assert.equal(own.outcome, one.outcome);
       assert.equal(own.hits.length, one.hits.length);
-      // The command has the normal of the place, with a bound.
-      one.hits.forEach(({ normal, ...hit }, k) => same_members(own.hits[k], hit, 5, `${name}: ray ${i}`));
+      one.hits.forEach((hit, k) => same_members(own.hits[k], hit, 6, `${name}: ray ${i}`));
     });
     same_members(surface.measure(), native("measure"), 6, name);
     same_members(surface.selfContact(), native("self-contact"), 4, name);
@@ -373,6 +374,23 @@ test("answers about many poses at once as one by one, and in time", () => {
     assert.deepStrictEqual([apart.lower[i], apart.upper[i]], snug.distance(bracket, pin, { poseB }).distance);
   });
   assert.ok(seconds < 0.5);
+  // Near ones: moved along the shortest way until a thousandth to a hundredth of the size is left, or as much overlap.
+  const near = list.map((poseB, i) => {
+    const { distance, witness: [a, b] } = snug.distance(bracket, pin, { poseB });
+    const left = (((i % 20) - 10) / 1000) * bracket.size, share = distance[1] > 0 ? 1 - left / distance[1] : 0;
+    return snug.pose({ after: poseB, move: a.map((x, k) => share * (x - b[k])) });
+  });
+  const nearB = Float64Array.from(near.flat());
+  snug.collideMany(bracket, pin, nearB.subarray(0, 120));
+  const milliseconds = [0, 1, 2, 3, 4].map(() => {
+    const from = performance.now();
+    snug.collideMany(bracket, pin, nearB);
+    return performance.now() - from;
+  }).sort((a, b) => a - b);
+  console.log(`1,000 near ones in ${milliseconds[2].toFixed(1)} ms`);
+  assert.ok(milliseconds[0] < 1000);
+  const verdicts = snug.collideMany(bracket, pin, nearB).verdicts;
+  assert.ok(verdicts.filter((verdict) => verdict === 0).length > 200 && verdicts.filter((verdict) => verdict === 1 || verdict === 2).length > 400);
   assert.throws(() => snug.collideMany(bracket, pin, [1, 2, 3]), { problem: "pose" });
 });
 
@@ -405,6 +423,67 @@ test("tells progress, and ends where that says so", () => {
   assert.throws(() => bust.tessellate({ error: 0.0001 * bust.size, progress: () => false }), { name: "SnugError", problem: "interrupted" });
 });
 
+// Three links of a box each in a row along x; joints turn about z.
+const arm_text = (() => {
+  const link = (name) => `<link name="${name}"><collision><origin xyz="0.5 0 0"/><geometry><mesh filename="package://arm/box.obj"/></geometry></collision></link>`;
+  const joint = (name, a, b) => `<joint name="${name}" type="revolute"><parent link="${a}"/><child link="${b}"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/><limit lower="-3.2" upper="3.2"/></joint>`;
+  return `<robot name="arm">${["base", "upper", "lower"].map(link).join("")}${joint("shoulder", "base", "upper")}${joint("elbow", "upper", "lower")}</robot>`;
+})();
+const box_text = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => `v ${k & 1 ? 0.45 : -0.45} ${k & 2 ? 0.1 : -0.1} ${k & 4 ? 0.1 : -0.1}\n`).join("") + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+test("moves robots as the native library does", () => {
+  const files = { "arm/box.obj": box_text }, arm = snug.urdf("arm.urdf", arm_text, { files });
+  mkdirSync(join(scratch, "arm"));
+  writeFileSync(join(scratch, "arm/box.obj"), box_text);
+  writeFileSync(join(scratch, "arm.urdf"), arm_text);
+  writeFileSync(join(scratch, "moves.txt"), "shoulder elbow\n0 0\n1.25 1.25\n2.5 2.5\n");
+  const native = ask("scene", join(scratch, "arm.urdf"), "--package", scratch, "--path", join(scratch, "moves.txt"), "--joined").results;
+  const path = [0, 1.25, 2.5].map((x) => ({ shoulder: x, elbow: x })), own = arm.firstContacts(path, { joined: true });
+  assert.deepStrictEqual([arm.name, arm.links, arm.joints, arm.outward], ["arm", ["base", "upper", "lower"], { shoulder: [-3.2, 3.2], elbow: [-3.2, 3.2] }, 0]);
+  assert.equal(own.length, 3);
+  own.forEach((each, i) => same_members(each, native[i], 10, `pair ${i}`));
+  assert.ok(own.some(({ verdict, time }) => verdict === "intersecting" && time[0] > 1));
+  assert.equal(arm.firstContacts(path).length, 1);
+  const [r0, , , x] = arm.poses({ shoulder: Math.PI / 2 }).lower;
+  assert.ok(Math.abs(r0) < 1e-12 && Math.abs(x - 1) < 1e-12);
+  const { throws } = assert;
+  throws(() => arm.poses({ knee: 1 }), { problem: "value", message: /no joint is called 'knee'/ });
+  throws(() => arm.firstContacts([]), { problem: "value" });
+  throws(() => snug.urdf("arm.urdf", arm_text), { problem: "unreadable", message: /arm\/box.obj: this file is not among/ });
+  throws(() => snug.urdf("arm.urdf", arm_text.replace("package://arm", "..").replace("/box", "/../box"), { files: () => box_text }), { problem: "unreadable", message: /leads out/ });
+  const apart = snug.urdf("arm.urdf", arm_text, { files: () => Buffer.from(box_text), srdf: '<robot name="arm"><disable_collisions link1="base" link2="lower"/></robot>' });
+  assert.equal(apart.firstContacts(path).length, 0);
+  arm.delete();
+  throws(() => arm.poses(), TypeError);
+});
+
+// Two squares, one of them twice, as text of USD.
+const mesh_text = (name, x) => `def Mesh "${name}" { int[] faceVertexCounts = [4]\n int[] faceVertexIndices = [0, 1, 2, 3]\n point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+  double3 xformOp:translate = (${x}, 0, 0)\n uniform token[] xformOpOrder = ["xformOp:translate"] }\n`;
+const parts_text = `#usda 1.0\n${mesh_text("left", 0)}${mesh_text("middle", 1.5)}${mesh_text("right", 4)}`;
+
+test("asks all pairs of the parts of a file", () => {
+  const parts = snug.readAssembly("parts.usda", parts_text, { scheme: "bilinear" });
+  assert.deepStrictEqual(parts.map(({ name, pose }) => [name, pose[3]]), [["left", 0], ["middle", 1.5], ["right", 4]]);
+  const near = snug.collideScene(parts, { margin: 1, measure: true });
+  assert.deepStrictEqual([near.pairs, near.separatedByBoxes, near.intersecting, near.results.map(({ a, b }) => [a, b])], [3, 2, 0, [[0, 1]]]);
+  const [{ a, b, ...answer }] = near.results, [left, middle] = parts;
+  assert.deepStrictEqual(answer, snug.collide(left.surface, middle.surface, { poseB: middle.pose, margin: 1, measure: true }));
+  const apart = snug.distanceScene(parts, 2, { absolute: 1e-6 });
+  assert.deepStrictEqual(apart.results.map(({ a, b, distance }) => [a, b, Math.round(1000 * distance[1])]), [[0, 1, 500], [1, 2, 1500]]);
+  assert.deepStrictEqual(snug.distanceScene(parts, 9, { pairs: [0, 2] }).results.length, 1);
+  assert.equal(snug.collideScene(parts, { margins: [0, 2, 4] }).within, 1);
+  assert.throws(() => snug.collideScene(parts, { pairs: [0, 9] }), { problem: "value" });
+  assert.throws(() => snug.collideScene(parts, { pairs: [0, 1, 2] }), { problem: "value" });
+  const buffer = new Uint8Array(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]).buffer);
+  const gltf = JSON.stringify({ asset: { version: "2.0" }, buffers: [{ uri: "a.bin", byteLength: 36 }], bufferViews: [{ buffer: 0, byteLength: 36 }],
+    accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: "VEC3", min: [0, 0, 0], max: [1, 1, 0] }], meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+    nodes: [{ mesh: 0, name: "one" }, { mesh: 0, name: "two", translation: [0, 0, 3] }], scenes: [{ nodes: [0, 1] }], scene: 0 });
+  const twice = snug.readAssembly("a.gltf", gltf, { files: { "a.bin": buffer } });
+  assert.ok(twice.length === 2 && twice[0].surface === twice[1].surface && twice[1].pose[11] === 3);
+  assert.throws(() => snug.read("a.gltf", gltf), { problem: "unreadable", message: /a.bin: this file is not among/ });
+});
+
 test("works in a worker, with promises, progress and an end on request", async () => {
   const { default: SnugWorker } = await import(pathToFileURL(join(folder, "worker.js")));
   const later = SnugWorker(), file = readFileSync(join(models, "bust.obj"));
@@ -427,6 +506,12 @@ test("works in a worker, with promises, progress and an end on request", async (
   assert.deepStrictEqual(await measured, own.measure());
   assert.deepStrictEqual(await later.distance(bust, pin), snug.distance(own, model("pin.obj")));
   await assert.rejects(later.distance(bust, pin, { signal: AbortSignal.abort() }), { name: "AbortError" });
+  const parts = await later.readAssembly("parts.usda", parts_text, { scheme: "bilinear" }), here = snug.readAssembly("parts.usda", parts_text, { scheme: "bilinear" });
+  assert.deepStrictEqual(await later.collideScene(parts, { margin: 1 }), snug.collideScene(here, { margin: 1 }));
+  const arm = await later.urdf("arm.urdf", arm_text, { files: { "arm/box.obj": box_text } });
+  assert.deepEqual([arm.name, arm.links], ["arm", ["base", "upper", "lower"]]);
+  assert.equal((await arm.firstContacts([{}, { shoulder: 1 }]))[0].verdict, "separated");
+  await assert.rejects(later.urdf("arm.urdf", arm_text, { files: () => box_text }), TypeError);
   await bust.delete();
   await assert.rejects(bust.measure());
   await later.close();

@@ -1,7 +1,7 @@
 // Compiles if snug.d.ts has the types that people use; package.mjs calls what is declared.
 
-import SnugWorker, { type Surface as SurfaceInWorker } from "../package/worker.js";
-import Snug, { SnugError, type Collision, type Interval, type Surface } from "../package/snug.js";
+import SnugWorker, { type Robot as RobotInWorker, type Surface as SurfaceInWorker } from "../package/worker.js";
+import Snug, { SnugError, type Collision, type Interval, type LinkContact, type Robot, type Surface } from "../package/snug.js";
 
 const snug = await Snug();
 const a: Surface = snug.read("a.obj", "v 0 0 0");
@@ -23,10 +23,19 @@ const later = SnugWorker();
 const remote: SurfaceInWorker = await later.read("a.obj", "v 0 0 0");
 const drawn: Float64Array = (await remote.tessellate({ error: 0.1, signal: AbortSignal.timeout(1), progress: () => {} })).positions;
 const verdict: string = (await later.collide(remote, remote, { signal: new AbortController().signal })).verdict;
+const parts = snug.readAssembly("a.gltf", "", { files: { "a.bin": new Uint8Array(3) } });
+const together: number = snug.collideScene(parts, { tolerance: 0.1, pairs: [0, 1] }).results[0].a;
+const apart: Interval = snug.distanceScene([{ surface: a }], 1).results[0].distance;
+const arm: Robot = snug.urdf("arm.urdf", "", { files: (path) => path });
+const meeting: LinkContact = arm.firstContacts([{ elbow: 1 }, {}], { joined: true })[0];
+const there = await later.readAssembly("a.3mf", new Uint8Array(3));
+const counted: number = (await later.collideScene(there, { signal: AbortSignal.timeout(1) })).within;
+const arm_there: RobotInWorker = await later.urdf("arm.urdf", "");
+const frame: string = (await arm_there.firstContacts([{}], { progress: () => {} }))[0].frame;
 // @ts-expect-error: a surface of a worker is another one
 snug.collide(remote, b);
 // @ts-expect-error: there is no such verdict
 const wrong: boolean = hit.verdict === "touching";
 // @ts-expect-error: nor such a scheme
 snug.read("c.obj", "", { scheme: "butterfly" });
-export { bytes, drawn, room, verdict, verdicts, centroid, faces, first, inside, when, gap, normal, positions, wrong, SnugError };
+export { together, apart, meeting, counted, frame, bytes, drawn, room, verdict, verdicts, centroid, faces, first, inside, when, gap, normal, positions, wrong, SnugError };
