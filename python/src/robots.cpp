@@ -30,6 +30,13 @@ struct PyRobot {
   }
 };
 
+std::string name_of_key(py::handle name, const char* what) {
+  if (!py::isinstance<py::str>(name))
+    throw py::type_error(std::string(what) + ": names are strings, not " +
+                         py::repr(name).cast<std::string>());
+  return name.cast<std::string>();
+}
+
 std::string text_path(const py::object& path) {
   return py::module_::import("os").attr("fspath")(path).cast<std::string>();
 }
@@ -39,7 +46,7 @@ PyRobot urdf(const py::object& file, bool visual, const py::object& packages, co
   RobotOptions options{.visual = visual, .primitive_error = primitive_error};
   if (py::isinstance<py::dict>(packages)) {
     for (const auto& [name, folder] : packages.cast<py::dict>())
-      options.packages[name.cast<std::string>()] = text_path(py::reinterpret_borrow<py::object>(folder));
+      options.packages[name_of_key(name, "packages")] = text_path(py::reinterpret_borrow<py::object>(folder));
   } else if (!packages.is_none()) {
     options.packages[""] = text_path(packages);
   }
@@ -61,8 +68,13 @@ PyRobot urdf(const py::object& file, bool visual, const py::object& packages, co
 std::vector<double> positions_of(const Robot& robot, const py::object& given) {
   std::vector<std::pair<std::string, double>> positions;
   if (!given.is_none()) {
-    for (const auto& [name, position] : given.cast<py::dict>())
-      positions.emplace_back(name.cast<std::string>(), position.cast<double>());
+    for (const auto& [name, position] : py::dict(given)) {
+      const std::string joint = name_of_key(name, "positions");
+      const std::optional<double> number =
+          number_of(py::reinterpret_borrow<py::object>(position), joint.c_str());
+      if (!number) throw py::type_error(joint + ": give a number, not None");
+      positions.emplace_back(joint, *number);
+    }
   }
   return joint_positions(robot, positions);
 }

@@ -215,7 +215,7 @@ TEST(robot, first_contacts_of_all_pairs_are_those_of_each) {
       "arm.urdf");
   std::vector<Surface> surfaces;
   for (const ControlMesh& mesh : robot.meshes) surfaces.emplace_back(mesh);
-  const std::vector<std::vector<double>> path{{0, 0}, {2.8, 1.9}};
+  const std::vector<std::vector<double>> path{{0, 0}, {2.3, 2.3}, {2.8, 1.9}};
   for (const int threads : {1, 3}) {
     std::atomic<int> reports{0};
     const WorkMonitor monitor{.on_progress = [&](double done) { reports += done > 0 && done <= 1; }};

@@ -365,15 +365,23 @@ test("gives the digits of the native library to questions of every kind", () => 
 test("answers about many poses at once as one by one, and in time", () => {
   const [bracket, pin] = [model("bracket.obj"), model("pin.obj")], list = poses(Math.max(bracket.size, pin.size), 1000), posesB = Float64Array.from(list.flat());
   const words = ["separated", "within", "intersecting", "undecided"];
-  const start = performance.now(), found = snug.collideMany(bracket, pin, posesB), seconds = (performance.now() - start) / 1000;
-  console.log(`1,000 collide queries in ${(1000 * seconds).toFixed(1)} ms`);
+  // Of this process, whoever else uses the machine.
+  const milliseconds = (work) => {
+    const before = process.cpuUsage();
+    work();
+    const { user, system } = process.cpuUsage(before);
+    return (user + system) / 1000;
+  };
+  let found;
+  const first = milliseconds(() => (found = snug.collideMany(bracket, pin, posesB)));
+  console.log(`1,000 collide queries in ${first.toFixed(1)} ms`);
   const apart = snug.distanceMany(bracket, pin, posesB);
   list.slice(0, 100).forEach((poseB, i) => {
     const one = snug.collide(bracket, pin, { poseB });
     assert.deepStrictEqual([words[found.verdicts[i]], [found.lower[i], found.upper[i]]], [one.verdict, one.distance]);
     assert.deepStrictEqual([apart.lower[i], apart.upper[i]], snug.distance(bracket, pin, { poseB }).distance);
   });
-  assert.ok(seconds < 0.5);
+  assert.ok(first < 500);
   // Near ones: moved along the shortest way until a thousandth to a hundredth of the size is left, or as much overlap.
   const near = list.map((poseB, i) => {
     const { distance, witness: [a, b] } = snug.distance(bracket, pin, { poseB });
@@ -382,13 +390,9 @@ test("answers about many poses at once as one by one, and in time", () => {
   });
   const nearB = Float64Array.from(near.flat());
   snug.collideMany(bracket, pin, nearB.subarray(0, 120));
-  const milliseconds = [0, 1, 2, 3, 4].map(() => {
-    const from = performance.now();
-    snug.collideMany(bracket, pin, nearB);
-    return performance.now() - from;
-  }).sort((a, b) => a - b);
-  console.log(`1,000 near ones in ${milliseconds[2].toFixed(1)} ms`);
-  assert.ok(milliseconds[0] < 1000);
+  const times = [0, 1, 2, 3, 4].map(() => milliseconds(() => snug.collideMany(bracket, pin, nearB))).sort((a, b) => a - b);
+  console.log(`1,000 near ones in ${times[2].toFixed(1)} ms`);
+  assert.ok(times[0] < 1000);
   const verdicts = snug.collideMany(bracket, pin, nearB).verdicts;
   assert.ok(verdicts.filter((verdict) => verdict === 0).length > 200 && verdicts.filter((verdict) => verdict === 1 || verdict === 2).length > 400);
   assert.throws(() => snug.collideMany(bracket, pin, [1, 2, 3]), { problem: "pose" });
