@@ -82,7 +82,7 @@ def test_pairs(names, tmp_path):
     a, b = surfaces(*names[:2], scheme=names[2])
     files = [MODELS / f"{name}.obj" for name in names[:2]]
     how = ["--scheme", names[2]]
-    placed = poses(max(a.size, b.size), MANY // len(PAIRS), 1)
+    placed = poses(max(a.size, b.size), max(MANY // len(PAIRS), FEW + 2), 1)
     (tmp_path / "poses").write_text("".join(text(pose) + "\n" for pose in placed))
     for question, answers in (
         ("collide", snug.collide(a, b, pose_b=placed, measure=True, prove_contact=True)),

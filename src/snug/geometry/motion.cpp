@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <snug/geometry/angles.h>
 #include <support/direction.h>
 #include <support/error.h>
 
@@ -184,14 +185,15 @@ Motion Motion::translation(const Vector3& by) { return Motion().with_offset(by);
 
 Motion Motion::rotation(const Vector3& axis, double radians) {
   if (!std::isfinite(radians)) refuse("the angle of rotation is not finite");
-  return from_3x4(turned(unit(axis), std::sin(radians), std::cos(radians)));
+  const auto [sine, cosine] = nearest_turn(radians);
+  return from_3x4(turned(unit(axis), sine, cosine));
 }
 
 Motion Motion::rotation_degrees(const Vector3& axis, double degrees) {
   if (!std::isfinite(degrees)) refuse("the angle of rotation is not finite");
   int quarters = 0;
   const double rest = std::remquo(degrees, 90.0, &quarters) * (std::numbers::pi / 180);
-  const double s = std::sin(rest), c = std::cos(rest);
+  const auto [s, c] = nearest_turn(rest);
   const std::array<double, 4> sines{s, c, -s, -c};
   const auto quarter = static_cast<unsigned>(quarters) % 4;
   return from_3x4(turned(unit(axis), sines[quarter], sines[(quarter + 1) % 4]));

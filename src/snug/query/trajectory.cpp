@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <snug/geometry/angles.h>
 #include <snug/geometry/rounding.h>
 #include <support/direction.h>
 #include <support/error.h>
@@ -167,7 +168,7 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
                                              "give a pose between, or an axis and an angle");
   }
   const Vector3 vector{x, y, z};
-  piece.radians = 2 * std::atan2(length(vector), w);
+  piece.radians = 2 * angle_of(length(vector), w);
   if (piece.radians < min_angle) piece.radians = 0;
   if (piece.radians > 0) piece.axis = normalized(vector);
   piece.about = Point3{} + from.offset();
@@ -179,8 +180,8 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
     piece.turning = across;
   } else {
     // Solves (sin turning + (1 - cos) n x turning) / radians = across.
-    const double a = std::sin(piece.radians) / piece.radians, half = std::sin(piece.radians / 2),
-                 b = 2 * half * half / piece.radians;
+    const double a = nearest_turn(piece.radians).sine / piece.radians,
+                 half = nearest_turn(piece.radians / 2).sine, b = 2 * half * half / piece.radians;
     piece.turning = (1 / (a * a + b * b)) * (a * across - b * cross(n, across));
   }
   return piece;
