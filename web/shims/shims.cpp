@@ -30,7 +30,7 @@ double remembered(double x) {
 }  // namespace
 
 // Sine, cosine and arc tangent come from the C library, whose last bit is nobody's promise, and answers depend on it through
-// motions and boxes' axes. Rounded from quadruple precision they are those nearest to the exact ones, as glibc's are but for
+// boxes' axes; motions have their own. Rounded from quadruple precision they are those nearest to the exact ones, as glibc's are but for
 // very few arguments. These definitions come before those of the C library.
 extern "C" double sin(double x) { return remembered<sinl>(x); }
 extern "C" double cos(double x) { return remembered<cosl>(x); }
