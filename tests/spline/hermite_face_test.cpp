@@ -49,6 +49,28 @@ std::pair<PatchId, Place> place_of(const Drawn& d, double u, double v) {
   return {lower ? d.lower : *d.upper, {0, 0, own[1], own[2]}};
 }
 
+// The same cubic with a knot in the middle of a span; knots are double, so span k has the points 2 k + 1 and 2 k + 2 of its own.
+SplineCurve with_knot(const SplineCurve& curve, std::mt19937_64& random) {
+  const std::vector<double> breaks = breaks_of(curve.knots);
+  const std::size_t spans = breaks.size() - 1, k = random() % spans;
+  const auto mean = [](const Point3& a, const Point3& b, double t) { return a + t * (b - a); };
+  const auto joint = [&](std::size_t j) {
+    if (j == 0) return curve.points.front();
+    if (j == spans) return curve.points.back();
+    return mean(curve.points[2 * j], curve.points[2 * j + 1],
+                (breaks[j] - breaks[j - 1]) / (breaks[j + 1] - breaks[j - 1]));
+  };
+  const Point3 b0 = joint(k), b1 = curve.points[2 * k + 1], b2 = curve.points[2 * k + 2], b3 = joint(k + 1);
+  const Point3 a = mean(b0, b1, 0.5), m = mean(b1, b2, 0.5), d = mean(b2, b3, 0.5);
+  SplineCurve result = curve;
+  const auto at = static_cast<std::ptrdiff_t>(2 * k + 1);
+  result.points.erase(result.points.begin() + at, result.points.begin() + at + 2);
+  result.points.insert(result.points.begin() + at, {a, mean(a, m, 0.5), mean(m, d, 0.5), d});
+  const double middle = 0.5 * (breaks[k] + breaks[k + 1]);
+  result.knots.insert(std::upper_bound(result.knots.begin(), result.knots.end(), middle), 2, middle);
+  return result;
+}
+
 TEST(hermite_face, is_as_near_to_the_limit_as_it_says) {
   std::mt19937_64 random(9);
   std::size_t pairs = 0, singles = 0, reached = 0, near = 0, all = 0;
@@ -118,24 +140,35 @@ TEST(hermite_face, is_as_near_to_the_limit_as_it_says) {
             oracle::spline_point(spline.degree, spline.u_knots, spline.v_knots, spline.points, t, t);
         EXPECT_LE(length_of(there, third.origin + third.at(t).point), 1e-12);
       }
-      SplineCurve moved = diagonal;
-      moved.points[random() % moved.points.size()].y += 0.01;
-      double away = 0;
-      for (int k = 0; k <= 64; ++k) {
-        const double t = k / 64.0;
-        std::array<long double, 3> point{};
-        const auto basis = oracle::spline_basis(moved.knots, moved.degree, t);
-        for (std::size_t i = 0; i < basis.size(); ++i) {
-          point[0] += basis[i] * moved.points[i].x;
-          point[1] += basis[i] * moved.points[i].y;
-          point[2] += basis[i] * moved.points[i].z;
+      // Of a curve with a point moved; also one with a further knot, and moved where the curve before the knot is not.
+      for (SplineCurve moved : {diagonal, with_knot(diagonal, random)}) {
+        const bool further = moved.points.size() > diagonal.points.size();
+        std::size_t changed = random() % moved.points.size();
+        if (further) {
+          EXPECT_LE(distance_from_diagonal(spline, moved), 1e-12);
+          changed = 0;
+          while (moved.knots[changed + 4] == diagonal.knots[changed + 4]) ++changed;
+          changed += 4;  // of the curve behind the new knot
         }
-        const auto there =
-            oracle::spline_point(spline.degree, spline.u_knots, spline.v_knots, spline.points, t, t);
-        away = std::max(away, length_of(there, {static_cast<double>(point[0]), static_cast<double>(point[1]),
-                                                static_cast<double>(point[2])}));
+        moved.points[changed].y += 0.01;
+        double away = 0;
+        for (int k = 0; k <= 64; ++k) {
+          const double t = k / 64.0;
+          std::array<long double, 3> point{};
+          const auto basis = oracle::spline_basis(moved.knots, moved.degree, t);
+          for (std::size_t i = 0; i < basis.size(); ++i) {
+            point[0] += basis[i] * moved.points[i].x;
+            point[1] += basis[i] * moved.points[i].y;
+            point[2] += basis[i] * moved.points[i].z;
+          }
+          const auto there =
+              oracle::spline_point(spline.degree, spline.u_knots, spline.v_knots, spline.points, t, t);
+          away =
+              std::max(away, length_of(there, {static_cast<double>(point[0]), static_cast<double>(point[1]),
+                                               static_cast<double>(point[2])}));
+        }
+        EXPECT_GE(distance_from_diagonal(spline, moved), away);
       }
-      EXPECT_GE(distance_from_diagonal(spline, moved), away);
     }
   }
   EXPECT_GT(pairs, testing::share(150));

@@ -46,6 +46,16 @@ SplineSurface swept(const SplineCurve& curve) {
   return surface;
 }
 
+// Where one of two lists has a knot, on the parameters of the first.
+std::vector<double> common_breaks(const std::vector<double>& knots, const std::vector<double>& others) {
+  std::vector<double> breaks = knots;
+  for (const double t : others) {
+    if (t > knots.front() && t < knots.back()) breaks.push_back(t);
+  }
+  std::sort(breaks.begin(), breaks.end());
+  return breaks_of(breaks);
+}
+
 double share_of(double t, double low, double high) { return (t - low) / (high - low); }
 
 ParameterBox within(const ParameterBox& outer, const ParameterBox& box) {
@@ -216,12 +226,7 @@ SplineCurve part_of(const SplineCurve& curve, double begin, double end) {
 
 double distance_bound(const SplineCurve& a, const SplineCurve& b) {
   const SplineSurface p = swept(a), q = swept(b);
-  std::vector<double> breaks = a.knots;
-  for (const double t : b.knots) {
-    if (t > a.knots.front() && t < a.knots.back()) breaks.push_back(t);
-  }
-  std::sort(breaks.begin(), breaks.end());
-  breaks = breaks_of(breaks);
+  const std::vector<double> breaks = common_breaks(a.knots, b.knots);
   double largest = 0;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const ParameterBox box{breaks[k], breaks[k + 1], 0, 1};
@@ -265,7 +270,8 @@ double distance_from_diagonal(const SplineSurface& surface, const SplineCurve& c
     return result;
   };
   double largest = 0;
-  const std::vector<double> breaks = breaks_of(surface.u_knots);
+  // The curve may have knots that the surface has not: it can be a border of the face across the diagonal.
+  const std::vector<double> breaks = common_breaks(surface.u_knots, curve.knots);
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double begin = breaks[k], end = breaks[k + 1];
     const std::size_t span = span_at(surface.u_knots, d, begin), own = span_at(curve.knots, d, begin);
@@ -281,9 +287,9 @@ double distance_from_diagonal(const SplineSurface& surface, const SplineCurve& c
       }
       here = std::max(here, length_sq(off));
     }
-    const double rounding = a.error + b.error + gamma_bound(16) * (a.largest + b.largest);
-    largest =
-        std::max(largest, enlarged(enlarged(std::sqrt(enlarged(here))) + spatial_error(enlarged(rounding))));
+    const double rounding =
+        a.error + b.error + gamma_bound(16) * (a.largest + b.largest) + 64 * underflow_error;
+    largest = std::max(largest, distance_up(here, rounding));
   }
   return largest;
 }

@@ -42,7 +42,7 @@ struct FacePart {
 /// Requires:  degree 1 or 3, the same knots in u and v, of degree 3 twice each.
 [[nodiscard]] SplineCurve diagonal_of(const SplineSurface& surface);
 /// Upper bound of the distance between a curve and the diagonal of such a surface, at equal parameters, rounding included.
-/// Requires:  the same degree; knots of the curve are knots of the surface.
+/// Requires:  the same degree, and parameters from 0 to 1; knots may differ.
 [[nodiscard]] double distance_from_diagonal(const SplineSurface& surface, const SplineCurve& curve);
 /// The distinct knots.
 [[nodiscard]] std::vector<double> breaks_of(const std::vector<double>& knots);

@@ -232,13 +232,17 @@ TensorPiece turned(const TensorPiece& piece, std::size_t k) {
   return result;
 }
 
+double distance_up(double largest_sq, double rounding) {
+  return enlarged(enlarged(std::sqrt(enlarged(largest_sq + 4 * underflow_error))) +
+                  spatial_error(enlarged(rounding)));
+}
+
 double distance_bound(const TensorPiece& a, const TensorPiece& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.count(); ++i)
     largest = std::max(largest, length_sq(a.points[i] - b.points[i]));
   // Each difference is off by a rounding of two coordinates.
-  const double rounding = a.error + b.error + unit_roundoff * (a.largest + b.largest);
-  return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
+  return distance_up(largest, a.error + b.error + unit_roundoff * (a.largest + b.largest));
 }
 
 // Both lie in the hulls of their points.
@@ -249,8 +253,7 @@ double distance_bound(const ControlNet& net, const TensorPiece& bezier) {
     for (std::size_t i = 0; i < bezier.count(); ++i)
       largest = std::max(largest, length_sq(point - bezier.points[i]));
   }
-  const double rounding = net.error + bezier.error + unit_roundoff * (net.largest + bezier.largest);
-  return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(rounding));
+  return distance_up(largest, net.error + bezier.error + unit_roundoff * (net.largest + bezier.largest));
 }
 
 }  // namespace snug

@@ -63,6 +63,8 @@ struct CornerJet {
 /// Requires:  knots that are symmetric, as those of lattices and of Bezier points.
 [[nodiscard]] TensorPiece turned(const TensorPiece& piece, std::size_t k);
 
+/// Upper bound of a distance whose computed square is this, each coordinate of the difference being off by at most `rounding`.
+[[nodiscard]] double distance_up(double largest_sq, double rounding);
 /// Upper bound of |a(u, v) - b(u, v)| on [0, 1]^2, errors included.
 /// Requires:  Bezier points of the same degree.
 [[nodiscard]] double distance_bound(const TensorPiece& a, const TensorPiece& b);

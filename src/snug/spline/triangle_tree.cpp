@@ -197,7 +197,7 @@ double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic
       quartic.error + bicubic.error +
       (gamma_bound(row_roundings) + unit_roundoff) * 1.01 * (quartic.largest + bicubic.largest) +
       256 * underflow_error;
-  return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(enlarged(rounding)));
+  return distance_up(largest, rounding);
 }
 
 // The quartic as a biquartic: a Bezier point (i, j) is the mean of polar values at all ways of giving i of four points the second u, and
@@ -228,7 +228,7 @@ double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic
   const double rounding = quartic.error + bicubic.error +
                           gamma_bound(4 * row_roundings) * (quartic.largest + bicubic.largest) +
                           256 * underflow_error;
-  return enlarged(enlarged(std::sqrt(enlarged(largest))) + spatial_error(enlarged(rounding)));
+  return distance_up(largest, rounding);
 }
 
 TriangleTree::TriangleTree(const Patch& patch, unsigned turn, SquareHalf half)
