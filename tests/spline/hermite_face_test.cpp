@@ -287,5 +287,66 @@ TEST(hermite_face, equal_polynomials_have_no_distance) {
   }
 }
 
+// Over boxes of every shape, on either half, across the diagonal or not: no farther than the bound, wherever the bicubic is far.
+TEST(hermite_face, distances_over_boxes_are_bounded) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::size_t boxes = 0, across = 0;
+  double ratio = 0;
+  for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::loop, 44)) {
+    SCOPED_TRACE(c.name + ", " + testing::text_of(c.rules));
+    const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                               std::make_shared<BoundsCache>());
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (!surface.has_patch(PatchId(p)) || random() % testing::share(2) != 0) continue;
+      const Patch patch = surface.patch(PatchId(p));
+      const auto turn = static_cast<unsigned>(random() % 3);
+      const bool lower = random() % 2 == 0;
+      const auto interval = [&](std::uint64_t levels) {
+        const int level = static_cast<int>(random() % levels);
+        const auto k = static_cast<double>(random() % (std::uint64_t{1} << level));
+        return std::pair(std::ldexp(k, -level), std::ldexp(k + 1, -level));
+      };
+      const auto [u0, u1] = interval(6);
+      const auto [v0, v1] = interval(6);
+      if (lower ? v0 >= u1 : u0 >= v1) continue;
+      TriangleTree tree(patch, turn, lower ? SquareHalf::lower : SquareHalf::upper);
+      LimitEvaluator evaluator(patch);
+      const auto limit = [&](double u, double v) {
+        const std::array<double, 3> w = lower ? std::array{1 - u, u - v, v} : std::array{1 - v, u, v - u};
+        std::array<double, 3> own{};
+        for (unsigned k = 0; k < 3; ++k) own[(k + turn) % 3] = w[k];
+        const Place at{0, 0, own[1], own[2]};
+        BoundedPoint point;
+        evaluator.points({&at, 1}, {&point, 1});
+        return point.position - patch.origin;
+      };
+      // About there, with one point far away.
+      TensorPiece bicubic = bezier_piece(3);
+      const Vector3 near = limit(lower ? u1 : u0, lower ? v0 : v1);
+      std::fill_n(bicubic.points.begin(), 16, near);
+      Vector3& far = bicubic.points[random() % 16];
+      far = far + Vector3{unit(random), unit(random), unit(random)};
+      take_largest(bicubic);
+      const double bound = tree.distance({u0, u1, v0, v1}, bicubic, 0);
+      double farthest = 0;
+      for (int k = 0; k <= 16; ++k) {
+        for (int l = 0; l <= 16; ++l) {
+          const double x = k / 16.0, y = l / 16.0, u = u0 + x * (u1 - u0), v = v0 + y * (v1 - v0);
+          if (lower ? v <= u : u <= v)
+            farthest = std::max(farthest, length(limit(u, v) - value(bicubic, x, y)));
+        }
+      }
+      EXPECT_GE(bound * (1 + 1e-9) + 1e-12, farthest) << u0 << ' ' << u1 << ' ' << v0 << ' ' << v1;
+      ++boxes;
+      across += v1 > u0 && u1 > v0 ? 1 : 0;
+      ratio += bound / farthest;
+    }
+  }
+  EXPECT_GT(boxes, testing::share(200));
+  EXPECT_GT(across, boxes / 4);
+  EXPECT_LT(ratio, 2 * static_cast<double>(boxes));
+}
+
 }  // namespace
 }  // namespace snug::hermite_face_test

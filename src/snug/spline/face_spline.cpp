@@ -305,12 +305,7 @@ SplineFrame frame_at(const SplineSurface& surface, double u, double v) {
                     y = span_at(surface.v_knots, d, v);
   const Point3 origin = surface.points[x - d + surface.columns() * (y - d)];
   const TensorPiece piece = span_of(surface, x, y, origin);
-  // Of the part between here and the far end of the span, on either side.
-  const double u0 = surface.u_knots[x], u1 = surface.u_knots[x + 1], v0 = surface.v_knots[y],
-               v1 = surface.v_knots[y + 1];
-  const bool first_u = u - u0 < u1 - u, first_v = v - v0 < v1 - v;
-  const ParameterBox box{first_u ? u : u0, first_u ? u1 : u, first_v ? v : v0, first_v ? v1 : v};
-  const CornerJet jet = corner_jet(bezier_on(piece, box), first_u ? 0 : 1, first_v ? 0 : 1);
+  const CornerJet jet = jet_at(piece, u, v);
   SplineFrame frame{origin + jet.point, {}};
   const Vector3 across = cross(jet.along_u, jet.along_v);
   const double size = length(across);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <snug/geometry/rounding.h>
 
@@ -154,6 +156,32 @@ Vector3 value(const TensorPiece& piece, double u, double v) {
   all_u.fill(u);
   all_v.fill(v);
   return blossom(piece, {all_u.data(), piece.degree}, {all_v.data(), piece.degree});
+}
+
+CornerJet jet_at(const TensorPiece& piece, double u, double v) {
+  const std::size_t d = piece.degree;
+  std::array<double, most> all_u, all_v;
+  all_u.fill(u);
+  all_v.fill(v);
+  const Shares su = shares_of(d, piece.u.data(), {all_u.data(), d}),
+               sv = shares_of(d, piece.v.data(), {all_v.data(), d});
+  // The last step is between the values at the ends of the span.
+  const auto last = [d](const Shares& shares, const double* knots, std::array<Vector3, most + 1> p) {
+    for (std::size_t r = 0; r + 1 < d; ++r) {
+      for (std::size_t i = 0; i + r < d; ++i) p[i] = (1 - shares[r][i]) * p[i] + shares[r][i] * p[i + 1];
+    }
+    const double s = shares[d - 1][0], slope = static_cast<double>(d) / (knots[d] - knots[d - 1]);
+    return std::pair((1 - s) * p[0] + s * p[1], slope * (p[1] - p[0]));
+  };
+  std::array<Vector3, most + 1> values, slopes;
+  for (std::size_t j = 0; j <= d; ++j) {
+    std::array<Vector3, most + 1> line;
+    for (std::size_t i = 0; i <= d; ++i) line[i] = piece.at(i, j);
+    std::tie(values[j], slopes[j]) = last(su, piece.u.data(), line);
+  }
+  const auto [point, along_v] = last(sv, piece.v.data(), values);
+  const auto [along_u, twist] = last(sv, piece.v.data(), slopes);
+  return {point, along_u, along_v, twist};
 }
 
 CornerJet corner_jet(const TensorPiece& bezier, std::size_t x, std::size_t y) {

@@ -46,10 +46,13 @@ void take_largest(TensorPiece& piece);
 [[nodiscard]] Vector3 blossom(const TensorPiece& piece, std::span<const double> u, std::span<const double> v);
 /// The value at a parameter.
 [[nodiscard]] Vector3 value(const TensorPiece& piece, double u, double v);
-/// Value, derivatives along u and v, and the mixed one, of Bezier points at one of their corners: x, y are 0 or 1.
+/// Value, derivatives along u and v, and the mixed one.
 struct CornerJet {
   Vector3 point, along_u, along_v, twist;
 };
+/// At a parameter.
+[[nodiscard]] CornerJet jet_at(const TensorPiece& piece, double u, double v);
+/// Of Bezier points at one of their corners: x, y are 0 or 1.
 [[nodiscard]] CornerJet corner_jet(const TensorPiece& bezier, std::size_t x, std::size_t y);
 
 /// The polynomial on a part of its parameters, by Bezier points.

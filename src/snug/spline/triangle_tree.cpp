@@ -53,9 +53,8 @@ constexpr HalfWeights along_v(SquareHalf half) {
   return half == SquareHalf::lower ? HalfWeights{0, -1, 1} : HalfWeights{-1, 0, 1};
 }
 
-// Polar form of a quartic; Number has sums and multiples.
-template <class Number>
-Number polar(std::array<Number, quartic_count> p, const std::array<HalfWeights, 4>& at) {
+// Polar form of a quartic.
+Vector3 polar(std::array<Vector3, quartic_count> p, const std::array<HalfWeights, 4>& at) {
   for (std::size_t d = 4; d > 0; --d) {
     const HalfWeights& b = at[4 - d];
     for (std::size_t j = 0; j < d; ++j) {
@@ -68,107 +67,101 @@ Number polar(std::array<Number, quartic_count> p, const std::array<HalfWeights, 
   return p[0];
 }
 
-template <std::size_t rows, std::size_t columns>
-using Matrix = std::array<std::array<double, columns>, rows>;
+// How often k of n things can be chosen.
+constexpr std::array<std::array<double, 5>, 5> choices{
+    {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}}};
 
-// Bezier points of a child from those of a quartic: multiples of 1/16.
-using Quarter = Matrix<quartic_count, quartic_count>;
-Quarter quarter_rows(std::size_t child) {
-  constexpr HalfWeights c0{1, 0, 0}, c1{0, 1, 0}, c2{0, 0, 1}, m01{0.5, 0.5, 0}, m12{0, 0.5, 0.5},
-      m20{0.5, 0, 0.5};
-  constexpr std::array<std::array<HalfWeights, 3>, 4> corners{
-      {{c0, m01, m20}, {m01, c1, m12}, {m20, m12, c2}, {m12, m20, m01}}};
-  Quarter rows{};
-  for (std::size_t source = 0; source < quartic_count; ++source) {
-    std::array<double, quartic_count> unit{};
-    unit[source] = 1;
-    for (std::size_t j = 0; j <= 4; ++j) {
-      for (std::size_t i = 0; i + j <= 4; ++i) {
-        std::array<HalfWeights, 4> at{};
-        for (std::size_t k = 0; k < 4; ++k) at[k] = corners[child][k < i ? 1 : k < i + j ? 2 : 0];
-        rows[bezier_index(4, i, j)][source] = polar(unit, at);
-      }
-    }
-  }
-  return rows;
-}
-const std::array<Quarter, 4>& quarters() {
-  static const std::array<Quarter, 4> all{quarter_rows(0), quarter_rows(1), quarter_rows(2), quarter_rows(3)};
-  return all;
-}
+// What a Bezier point of degree 6 has of another polynomial's. The weights of a point are positive and sum to 1.
+struct Share {
+  std::uint8_t to, from;
+  double weight;
+};
 
-double binomial(std::size_t n, std::size_t k) {
-  return k == 0 ? 1 : binomial(n - 1, k - 1) * static_cast<double>(n) / static_cast<double>(k);
-}
-
-// Bezier points of degree 6 from those of a quartic.
-using Raised = Matrix<sextic_count, quartic_count>;
-const Raised& raised_rows() {
-  static const Raised rows = [] {
-    Raised result{};
+// From those of a quartic.
+const std::vector<Share>& raised_shares() {
+  static const std::vector<Share> all = [] {
+    std::vector<Share> shares;
     for (std::size_t j = 0; j <= 4; ++j) {
       for (std::size_t i = 0; i + j <= 4; ++i) {
         // Times (u + v + w)^2.
         for (std::size_t q = 0; q <= 2; ++q) {
           for (std::size_t p = 0; p + q <= 2; ++p) {
-            const std::size_t place = bezier_index(6, i + p, j + q);
-            result[place][bezier_index(4, i, j)] += multinomial(4, bezier_index(4, i, j)) *
-                                                    multinomial(2, bezier_index(2, p, q)) /
-                                                    multinomial(6, place);
+            const std::size_t to = bezier_index(6, i + p, j + q), from = bezier_index(4, i, j);
+            shares.push_back(
+                {static_cast<std::uint8_t>(to), static_cast<std::uint8_t>(from),
+                 multinomial(4, from) * multinomial(2, bezier_index(2, p, q)) / multinomial(6, to)});
           }
         }
       }
     }
-    return result;
+    return shares;
   }();
-  return rows;
+  return all;
 }
 
-// The same of a bicubic, on the lower half: with x = u + v and y = v (tensor_bezier()).
-using Halved = Matrix<sextic_count, 16>;
-const Halved& lower_rows() {
-  static const Halved rows = [] {
-    Halved result{};
+// From those of a bicubic, on the lower half: with x = u + v and y = v (tensor_bezier()).
+const std::vector<Share>& lower_shares() {
+  static const std::vector<Share> all = [] {
+    std::vector<Share> shares;
     constexpr std::size_t d = 3;
     for (std::size_t i = 0; i <= d; ++i) {
       for (std::size_t j = 0; j <= d; ++j) {
         for (std::size_t p = 0; p <= i; ++p) {
           for (std::size_t q = 0; q <= d - j; ++q) {
-            const std::size_t place = bezier_index(6, p + q, i - p + j);
-            result[place][i + 4 * j] +=
-                binomial(d, i) * binomial(d, j) * binomial(i, p) * binomial(d - j, q) / multinomial(6, place);
+            const std::size_t to = bezier_index(6, p + q, i - p + j);
+            shares.push_back(
+                {static_cast<std::uint8_t>(to), static_cast<std::uint8_t>(i + 4 * j),
+                 choices[d][i] * choices[d][j] * choices[i][p] * choices[d - j][q] / multinomial(6, to)});
           }
         }
       }
     }
-    return result;
+    return shares;
   }();
-  return rows;
+  return all;
 }
 
-template <std::size_t rows, std::size_t columns, class Points>
-Vector3 applied(const Matrix<rows, columns>& matrix, std::size_t row, const Points& points) {
-  Vector3 sum;
-  for (std::size_t k = 0; k < columns; ++k) sum = sum + matrix[row][k] * points[k];
-  return sum;
-}
-
-// Weights are rounded, sums of at most 16 products, which means are.
+// Weights are rounded, sums of at most 16 products, which means are; and four means of three points each.
 constexpr std::size_t row_roundings = 24;
 
-QuarticTriangle child_of(const QuarticTriangle& quartic, SquareHalf half, std::size_t child) {
-  std::array<Vector3, quartic_count> points;
-  for (std::size_t r = 0; r < quartic_count; ++r) points[r] = applied(quarters()[child], r, quartic.points);
-  QuarticTriangle result;
-  const unsigned turn = turn_of_child(half, child);
-  for (std::size_t j = 0; j <= 4; ++j) {
-    for (std::size_t i = 0; i + j <= 4; ++i) {
-      const std::array<std::size_t, 3> own{4 - i - j, i, j};
-      std::array<std::size_t, 3> there{};
-      for (std::size_t k = 0; k < 3; ++k) there[(k + turn) % 3] = own[k];
-      result.points[bezier_index(4, i, j)] = points[bezier_index(4, there[1], there[2])];
+// Of a quartic the polar values at all choices of four out of some points, which are given to `use` with how often each point
+// was chosen. Choices with the same beginning share its means.
+template <std::size_t degree, std::size_t count, class Use>
+void all_polar_values(const std::array<Vector3, quartic_count>& p,
+                      const std::array<HalfWeights, count>& points, std::size_t first,
+                      std::array<std::size_t, count>& chosen, const Use& use) {
+  for (std::size_t k = first; k < count; ++k) {
+    const HalfWeights& b = points[k];
+    std::array<Vector3, quartic_count> less;
+    for (std::size_t j = 0; j < degree; ++j) {
+      for (std::size_t i = 0; i + j < degree; ++i) {
+        less[bezier_index(degree - 1, i, j)] = b[0] * p[bezier_index(degree, i, j)] +
+                                               b[1] * p[bezier_index(degree, i + 1, j)] +
+                                               b[2] * p[bezier_index(degree, i, j + 1)];
+      }
     }
+    ++chosen[k];
+    if constexpr (degree == 1) {
+      use(chosen, less[0]);
+    } else {
+      all_polar_values<degree - 1>(less, points, k, chosen, use);
+    }
+    --chosen[k];
   }
+}
+
+// The corners of a half on the square [low, high]^2 of the half of a square that it lies in, both having the diagonal.
+QuarticTriangle on_diagonal(const QuarticTriangle& quartic, SquareHalf half, double low, double high) {
+  const std::array<HalfWeights, 3> corners{
+      weights_at(half, low, low),
+      half == SquareHalf::lower ? weights_at(half, high, low) : weights_at(half, high, high),
+      half == SquareHalf::lower ? weights_at(half, high, high) : weights_at(half, low, high)};
+  QuarticTriangle result;
+  std::array<std::size_t, 3> chosen{};
+  all_polar_values<4>(quartic.points, corners, 0, chosen,
+                      [&](const std::array<std::size_t, 3>& times, const Vector3& value) {
+                        result.points[bezier_index(4, times[1], times[2])] = value;
+                      });
   for (const Vector3& p : result.points) result.largest = std::max(result.largest, max_abs(p));
   result.error =
       enlarged(quartic.error + gamma_bound(row_roundings) * quartic.largest) + 64 * underflow_error;
@@ -178,19 +171,21 @@ QuarticTriangle child_of(const QuarticTriangle& quartic, SquareHalf half, std::s
 }  // namespace
 
 double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic, SquareHalf half) {
+  std::array<Vector3, sextic_count> of_quartic, of_bicubic;
+  for (const Share& s : raised_shares())
+    of_quartic[s.to] = of_quartic[s.to] + s.weight * quartic.points[s.from];
   // On the upper half u and v change places.
-  std::array<Vector3, 16> points;
-  for (std::size_t j = 0; j < 4; ++j) {
-    for (std::size_t i = 0; i < 4; ++i)
-      points[i + 4 * j] = half == SquareHalf::lower ? bicubic.at(i, j) : bicubic.at(j, i);
+  const bool lower = half == SquareHalf::lower;
+  for (const Share& s : lower_shares()) {
+    const std::size_t from = lower ? s.from : s.from / 4 + 4 * (s.from % 4);
+    of_bicubic[s.to] = of_bicubic[s.to] + s.weight * bicubic.points[from];
   }
   double largest = 0;
   for (std::size_t j = 0; j <= 6; ++j) {
     for (std::size_t i = 0; i + j <= 6; ++i) {
-      const std::size_t place = bezier_index(6, i, j),
-                        from = half == SquareHalf::lower ? place : bezier_index(6, j, i);
-      largest = std::max(largest, length_sq(applied(raised_rows(), place, quartic.points) -
-                                            applied(lower_rows(), from, points)));
+      const std::size_t place = bezier_index(6, i, j);
+      largest =
+          std::max(largest, length_sq(of_quartic[place] - of_bicubic[lower ? place : bezier_index(6, j, i)]));
     }
   }
   const double rounding =
@@ -204,25 +199,29 @@ double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic
 // j of them the second v.
 double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic, SquareHalf half,
                       const ParameterBox& box) {
-  const HalfWeights a = weights_at(half, box.u0, box.v0), b = weights_at(half, box.u1, box.v0),
-                    c = weights_at(half, box.u1, box.v1), d = weights_at(half, box.u0, box.v1);
+  // The corners of the box, and how often each is among the four points of a polar value.
+  const std::array<HalfWeights, 4> corners{weights_at(half, box.u0, box.v0), weights_at(half, box.u1, box.v0),
+                                           weights_at(half, box.u0, box.v1),
+                                           weights_at(half, box.u1, box.v1)};
+  std::array<Vector3, 25> off;
+  std::array<std::size_t, 4> chosen{};
+  all_polar_values<4>(quartic.points, corners, 0, chosen,
+                      [&](const std::array<std::size_t, 4>& times, const Vector3& value) {
+                        const std::size_t both = times[3], i = times[1] + both, j = times[2] + both;
+                        const double share = choices[i][both] * choices[4 - i][j - both] / choices[4][j];
+                        off[i + 5 * j] = off[i + 5 * j] + share * value;
+                      });
   double largest = 0;
   for (std::size_t i = 0; i <= 4; ++i) {
     for (std::size_t j = 0; j <= 4; ++j) {
-      Vector3 off;
-      for (std::size_t both = i + j > 4 ? i + j - 4 : 0; both <= std::min(i, j); ++both) {
-        std::array<HalfWeights, 4> at{a, a, a, a};
-        for (std::size_t k = 0; k < i + j - both; ++k) at[k] = k < both ? c : k < i ? b : d;
-        const double share = binomial(i, both) * binomial(4 - i, j - both) / binomial(4, j);
-        off = off + share * polar(quartic.points, at);
-      }
       // The bicubic, raised in both directions.
       const double su = static_cast<double>(i) / 4, sv = static_cast<double>(j) / 4;
       const std::size_t i0 = i == 0 ? 0 : i - 1, j0 = j == 0 ? 0 : j - 1, i1 = std::min<std::size_t>(i, 3),
                         j1 = std::min<std::size_t>(j, 3);
-      off = off - (sv * (su * bicubic.at(i0, j0) + (1 - su) * bicubic.at(i1, j0)) +
-                   (1 - sv) * (su * bicubic.at(i0, j1) + (1 - su) * bicubic.at(i1, j1)));
-      largest = std::max(largest, length_sq(off));
+      largest = std::max(
+          largest,
+          length_sq(off[i + 5 * j] - (sv * (su * bicubic.at(i0, j0) + (1 - su) * bicubic.at(i1, j0)) +
+                                      (1 - sv) * (su * bicubic.at(i0, j1) + (1 - su) * bicubic.at(i1, j1)))));
     }
   }
   const double rounding = quartic.error + bicubic.error +
@@ -331,7 +330,7 @@ class TriangleTree::Search {
       : tree_(tree), box_(box), bicubic_(bicubic) {}
 
   double run(double sufficient) {
-    visit({0, nullptr}, tree_.half_, {0, 1, 0, 1});
+    visit(0, tree_.half_, {0, 1, 0, 1});
     for (std::size_t steps = 0; !parts_.empty() && parts_.front().bound > std::max(largest_, sufficient);
          ++steps) {
       if (steps == most_search_parts || parts_.front().level >= search_levels) break;
@@ -343,7 +342,7 @@ class TriangleTree::Search {
       for (std::size_t child = 0; child < 4; ++child) {
         const auto [x, y] = quarter_of_child(half, child);
         const double u = 0.5 * x, v = 0.5 * y;
-        add({children + static_cast<std::uint32_t>(child), nullptr}, half_of_child(half, child),
+        add(children + static_cast<std::uint32_t>(child), half_of_child(half, child),
             bezier_on(part.bicubic, {u, u + 0.5, v, v + 0.5}), part.level + 1);
       }
     }
@@ -351,11 +350,6 @@ class TriangleTree::Search {
   }
 
  private:
-  // A node, or a polynomial that is part of one.
-  struct Triangle {
-    std::uint32_t node;
-    const QuarticTriangle* quartic;
-  };
   struct Part {
     std::uint32_t node;
     TensorPiece bicubic;
@@ -386,49 +380,67 @@ class TriangleTree::Search {
     return bezier_on(bicubic_, within(box_, part));
   }
 
-  void visit(const Triangle& triangle, SquareHalf half, const ParameterBox& square) {
+  void visit(std::uint32_t node, SquareHalf half, const ParameterBox& square) {
     if (!meets(half, square)) return;
     const ParameterBox common{std::max(square.u0, box_.u0), std::min(square.u1, box_.u1),
                               std::max(square.v0, box_.v0), std::min(square.v1, box_.v1)};
     if (common == square) {
-      add(triangle, half, on_part(square), 0);
+      add(node, half, on_part(square), 0);
       return;
     }
-    const QuarticTriangle* const whole = quartic_of(triangle);
+    const QuarticTriangle* const whole = quartic_of(node);
     if (whole != nullptr && covers(half, square, common)) {
       largest_ = std::max(largest_, distance_bound(*whole, on_part(common), half, within(square, common)));
       return;
     }
-    const std::uint32_t children = whole != nullptr ? 0 : tree_.children_of(triangle.node);
-    // The polynomial moves when nodes are added.
-    const std::optional<QuarticTriangle> kept = whole != nullptr ? std::optional(*whole) : std::nullopt;
+    if (whole != nullptr) {
+      visit_polynomial(*whole, half, square, common);
+      return;
+    }
+    const std::uint32_t children = tree_.children_of(node);
     for (std::size_t child = 0; child < 4; ++child) {
       const auto [x, y] = quarter_of_child(half, child);
       const double mu = 0.5 * (square.u0 + square.u1), mv = 0.5 * (square.v0 + square.v1);
       const ParameterBox quarter{x == 0 ? square.u0 : mu, x == 0 ? mu : square.u1, y == 0 ? square.v0 : mv,
                                  y == 0 ? mv : square.v1};
-      if (!meets(half_of_child(half, child), quarter)) continue;
-      if (!kept) {
-        visit({children + static_cast<std::uint32_t>(child), nullptr}, half_of_child(half, child), quarter);
-      } else {
-        const QuarticTriangle part = child_of(*kept, half, child);
-        visit({triangle.node, &part}, half_of_child(half, child), quarter);
-      }
+      if (meets(half_of_child(half, child), quarter))
+        visit(children + static_cast<std::uint32_t>(child), half_of_child(half, child), quarter);
     }
   }
-  [[nodiscard]] const QuarticTriangle* quartic_of(const Triangle& triangle) const {
-    if (triangle.quartic != nullptr) return triangle.quartic;
-    const auto& own = tree_.nodes_[triangle.node].quartic;
+  // A part of a square through which the diagonal runs: of two dyadic intervals the shorter one, twice, is a square on it, and what
+  // else lies in the half is a rectangle.
+  //
+  //      .-------.-----------.
+  //      |     / |           |
+  //      |   /   |           |
+  //      '-------'-----------'
+  void visit_polynomial(const QuarticTriangle& quartic, SquareHalf half, const ParameterBox& square,
+                        const ParameterBox& common) {
+    const double low = std::max(common.u0 - square.u0, common.v0 - square.v0),
+                 high = std::min(common.u1 - square.u0, common.v1 - square.v0), size = square.u1 - square.u0;
+    const ParameterBox middle{square.u0 + low, square.u0 + high, square.v0 + low, square.v0 + high};
+    largest_ = std::max(
+        largest_, distance_bound(on_diagonal(quartic, half, low / size, high / size), on_part(middle), half));
+    const bool lower = half == SquareHalf::lower;
+    for (const ParameterBox& rest : {lower ? ParameterBox{middle.u1, common.u1, middle.v0, middle.v1}
+                                           : ParameterBox{common.u0, middle.u0, middle.v0, middle.v1},
+                                     lower ? ParameterBox{middle.u0, middle.u1, common.v0, middle.v0}
+                                           : ParameterBox{middle.u0, middle.u1, middle.v1, common.v1}}) {
+      if (rest.u0 < rest.u1 && rest.v0 < rest.v1)
+        largest_ = std::max(largest_, distance_bound(quartic, on_part(rest), half, within(square, rest)));
+    }
+  }
+  [[nodiscard]] const QuarticTriangle* quartic_of(std::uint32_t node) const {
+    const auto& own = tree_.nodes_[node].quartic;
     return own ? &*own : nullptr;
   }
 
-  void add(const Triangle& triangle, SquareHalf half, const TensorPiece& bicubic, unsigned level) {
-    if (const QuarticTriangle* quartic = quartic_of(triangle)) {
+  void add(std::uint32_t node, SquareHalf half, const TensorPiece& bicubic, unsigned level) {
+    if (const QuarticTriangle* quartic = quartic_of(node)) {
       largest_ = std::max(largest_, distance_bound(*quartic, bicubic, half));
       return;
     }
-    parts_.push_back(
-        {triangle.node, bicubic, distance_bound(tree_.nodes_[triangle.node].net, bicubic), level});
+    parts_.push_back({node, bicubic, distance_bound(tree_.nodes_[node].net, bicubic), level});
     std::push_heap(parts_.begin(), parts_.end(), nearer);
   }
 
