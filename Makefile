@@ -122,7 +122,7 @@ tidy: install-packages  ## clang-tidy over the library
 	@cmake --preset dev > /dev/null
 	@run-clang-tidy -quiet -j $(JOBS) -p build/dev 'src/snug/.*\.cpp$$'
 
-docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
+docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/manufacturing.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
 	@$(call build,release,snug_command snug_research)
 	@scripts/install_packages docs
 	@mkdir -p build/docs
@@ -135,6 +135,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/draw_meshes build/release/bin/snug docs/pictures
+	@scripts/run_page build/release/bin/snug docs/manufacturing.md docs/pictures
 	@[ ! -x build/release/bin/bench_wraps ] || scripts/draw_wraps build/release/bin/snug build/release/bin/bench_wraps docs/pictures  # with CGAL, by make bench
 	@scripts/draw_nodal build/release/bin/snug docs/pictures
 	@scripts/draw_rays build/release/bin/snug docs/pictures
