@@ -82,6 +82,14 @@ if(ZLIB_FOUND)
   set(snug_zlib ZLIB::ZLIB)
 endif()
 
+# For COLLADA, FBX and a few more: without it these are refused.
+option(SNUG_ASSIMP "Read COLLADA, FBX and others by Assimp" OFF)
+set(snug_assimp "")
+if(SNUG_ASSIMP)
+  find_package(assimp REQUIRED)
+  set(snug_assimp assimp::assimp)
+endif()
+
 #   snug_library(room/a.cpp ...)
 function(snug_library)
   find_package(hwy REQUIRED)
@@ -92,8 +100,10 @@ function(snug_library)
                                                 VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy nlohmann_json::nlohmann_json
-                                             Threads::Threads ${snug_zlib})
+                                             Threads::Threads ${snug_zlib} ${snug_assimp})
   set_source_files_properties(io/zip.cpp PROPERTIES COMPILE_DEFINITIONS SNUG_HAS_ZLIB=$<BOOL:${ZLIB_FOUND}>
+                              SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(io/assimp.cpp PROPERTIES COMPILE_DEFINITIONS SNUG_HAS_ASSIMP=$<BOOL:${SNUG_ASSIMP}>
                               SKIP_UNITY_BUILD_INCLUSION ON)
   snug_precompile(snug_objects)
   snug_units(snug_objects)
@@ -105,11 +115,11 @@ function(snug_library)
   target_compile_features(snug PUBLIC cxx_std_20)
   target_include_directories(snug PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(snug PRIVATE hwy::hwy Threads::Threads ${snug_zlib})
+  target_link_libraries(snug PRIVATE hwy::hwy Threads::Threads ${snug_zlib} ${snug_assimp})
 
   if(BUILD_SHARED_LIBS)  # whose private symbols cannot be linked
     add_library(snug_private STATIC $<TARGET_OBJECTS:snug_objects>)
-    target_link_libraries(snug_private PRIVATE hwy::hwy Threads::Threads ${snug_zlib})  # as snug does: the same flags, the same objects
+    target_link_libraries(snug_private PRIVATE hwy::hwy Threads::Threads ${snug_zlib} ${snug_assimp})  # as snug does: the same flags, the same objects
   else()
     add_library(snug_private INTERFACE)
     target_link_libraries(snug_private INTERFACE snug)

@@ -34,7 +34,7 @@ LIBRARIES = {
     "bvh": ("hwy/",),
     "shape": ("hwy/",),
     "independence": ("flint/", "gmpxx.h"),
-    "io": ("nlohmann/", "zlib.h"),
+    "io": ("nlohmann/", "zlib.h", "assimp/"),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check,

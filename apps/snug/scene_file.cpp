@@ -373,7 +373,8 @@ namespace {
 bool is_assembly(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = lower_case(c);
-  for (const char* known : {".gltf", ".glb", ".3mf", ".usda", ".usd"}) {
+  for (const char* known :
+       {".gltf", ".glb", ".3mf", ".usda", ".usd", ".dae", ".fbx", ".3ds", ".blend", ".lwo", ".x"}) {
     if (ending == known) return true;
   }
   return false;

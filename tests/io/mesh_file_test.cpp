@@ -220,7 +220,7 @@ TEST(mesh_file, bad_names_are_clear_errors) {
   EXPECT_EQ(message(""), "the name of the file to read is empty");
   EXPECT_EQ(message(folder.file("none.obj")),
             folder.file("none.obj") + ": cannot be read: No such file or directory");
-  for (const char* name : {"a.xyz", "a.dae"}) {
+  for (const char* name : {"a.xyz", "a.wrl"}) {
     EXPECT_EQ(message(folder.file(name)),
               folder.file(name) +
                   ": meshes are read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf files only");

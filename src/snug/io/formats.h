@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -177,5 +178,21 @@ inline constexpr std::size_t glb_header_size = 12, glb_chunk_head_size = 8;
 /// The same as glTF text, with its buffer as a data URI: one file, a third longer.
 [[nodiscard]] std::string format_gltf(const ControlMesh& mesh, const std::string& name,
                                       const Notes& notes = {}, std::span<const Vector3> normals = {});
+
+/// Endings of files that Assimp reads.
+inline constexpr std::array<std::string_view, 6> assimp_endings{".dae",   ".fbx", ".3ds",
+                                                                ".blend", ".lwo", ".x"};
+/// Was the library built with it?
+[[nodiscard]] bool has_assimp();
+
+/// The meshes of such a file, and the nodes that place them; COLLADA in metres, its axes as they are.
+///
+/// Guarantee: coordinates are the floats that Assimp makes of the file, which is the only one it opens. The meshes of a node, one for each
+///            material, are one, in which corners with equal coordinates are one vertex. The tag of the scheme is flat if
+///            all faces of the file are triangles. A broken file may do whatever Assimp does with it.
+/// Notes:     one line each that coordinates are floats, for what is no face, and for what deforms the surface.
+/// Errors:    also whatever Assimp refuses; always, in a library without it.
+[[nodiscard]] PlacedMeshes read_assimp(std::string_view bytes, const std::string& ending,
+                                       const std::string& name, const Notes& notes = {});
 
 }  // namespace snug

@@ -18,11 +18,16 @@
 namespace snug {
 namespace {
 
+std::string lower_ending(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(), lower_case);
+  return ending;
+}
+
 /// The lower-case ending of a name, which is its format; refused if it is not among those known.
 std::string format_among(std::initializer_list<std::string_view> known, const std::string& path,
                          const char* what) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::ranges::transform(ending, ending.begin(), lower_case);
+  std::string ending = lower_ending(path);
   if (std::ranges::find(known, ending) == known.end()) {
     throw InputError(InputProblem::unreadable, path + ": meshes are " + what + " files only");
   }
@@ -74,8 +79,13 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
   return format_obj(mesh);
 }
 
+bool by_assimp(std::string_view ending) {
+  return std::ranges::find(assimp_endings, ending) != assimp_endings.end();
+}
+
 /// The ending that names the format to read; empty for none.
 std::string format_to_read(const std::string& path) {
+  if (std::string ending = lower_ending(path); by_assimp(ending)) return ending;
   return format_among(
       {"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb", ".gltf", ".3mf"}, path,
       "read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf");
@@ -89,6 +99,7 @@ ControlMesh parsed(std::string_view bytes, const std::string& ending, const std:
   if (ending == ".glb" || ending == ".gltf")
     return parse_gltf(bytes, name, options.other_file, options.notes);
   if (ending == ".3mf") return parse_3mf(bytes, name, options.notes);
+  if (by_assimp(ending)) return joined(read_assimp(bytes, ending, name, options.notes), name, options.notes);
   if (ending.starts_with(".usd")) return parse_usda(bytes, name, options.notes);  // refuses binary ones
   return parse_obj(bytes, name, options.notes);
 }
@@ -98,6 +109,7 @@ std::optional<PlacedMeshes> parsed_parts(std::string_view bytes, const std::stri
                                          const std::string& name, const ReadOptions& options) {
   if (ending == ".glb" || ending == ".gltf") return read_gltf(bytes, name, options.other_file, options.notes);
   if (ending == ".3mf") return read_3mf(bytes, name, options.notes);
+  if (by_assimp(ending)) return read_assimp(bytes, ending, name, options.notes);
   if (ending.starts_with(".usd")) return read_usda(bytes, name, options.notes);
   return {};
 }
