@@ -4,13 +4,14 @@
 #include <cstddef>
 #include <vector>
 
-/// B-splines by the recursion of their basis functions, in extended precision.
+/// B-splines by the recursion of their basis functions, in extended precision or in rational numbers.
 namespace oracle {
 
 /// All basis functions of a degree at a parameter. At the last knot the last one is 1.
-[[nodiscard]] inline std::vector<long double> spline_basis(const std::vector<double>& knots,
-                                                           std::size_t degree, long double t) {
-  std::vector<long double> basis(knots.size() - 1, 0);
+template <class Number = long double>
+[[nodiscard]] std::vector<Number> spline_basis(const std::vector<double>& knots, std::size_t degree,
+                                               const Number& t) {
+  std::vector<Number> basis(knots.size() - 1, Number(0));
   std::size_t span = 0;
   for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
     if (knots[k] < knots[k + 1] && knots[k] <= t) span = k;
@@ -18,12 +19,10 @@ namespace oracle {
   basis[span] = 1;
   for (std::size_t d = 1; d <= degree; ++d) {
     for (std::size_t k = 0; k + d + 1 < knots.size(); ++k) {
-      long double sum = 0;
-      if (knots[k + d] > knots[k])
-        sum += (t - knots[k]) / (static_cast<long double>(knots[k + d]) - knots[k]) * basis[k];
+      Number sum(0);
+      if (knots[k + d] > knots[k]) sum += (t - knots[k]) / (Number(knots[k + d]) - knots[k]) * basis[k];
       if (knots[k + d + 1] > knots[k + 1])
-        sum += (knots[k + d + 1] - t) / (static_cast<long double>(knots[k + d + 1]) - knots[k + 1]) *
-               basis[k + 1];
+        sum += (knots[k + d + 1] - t) / (Number(knots[k + d + 1]) - knots[k + 1]) * basis[k + 1];
       basis[k] = sum;
     }
   }
