@@ -1,3 +1,5 @@
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/far/error.h>
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/topologyDescriptor.h>
@@ -252,6 +254,40 @@ OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules
                       : part == &parts.alive       ? OpenSubdivMesh::Limit::alive
                                                    : OpenSubdivMesh::Limit::exact});
     }
+  }
+  return result;
+}
+
+namespace Bfr = OpenSubdiv::Bfr;
+
+struct BfrSurfaces::Parts {
+  std::unique_ptr<Far::TopologyRefiner> refiner;
+  std::unique_ptr<Bfr::RefinerSurfaceFactory<>> factory;
+  std::vector<double> points;
+};
+
+BfrSurfaces::BfrSurfaces(const TaggedMesh& mesh, const Rules& rules) : parts_(std::make_unique<Parts>()) {
+  parts_->refiner = refiner_of(mesh, rules);
+  for (const Point& p : mesh.points) parts_->points.insert(parts_->points.end(), p.begin(), p.end());
+  if (!parts_->refiner) return;
+  Bfr::SurfaceFactory::Options options;
+  options.SetApproxLevelSmooth(6).SetApproxLevelSharp(6);
+  parts_->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*parts_->refiner, options);
+}
+BfrSurfaces::~BfrSurfaces() = default;
+
+std::optional<BfrSurfaces::Face> BfrSurfaces::at(std::size_t face,
+                                                 const std::vector<std::array<double, 2>>& uv) const {
+  Bfr::Surface<double> surface;
+  if (!parts_->factory || !parts_->factory->InitVertexSurface(static_cast<int>(face), &surface)) return {};
+  const Bfr::Surface<double>::PointDescriptor three(3);
+  std::vector<double> patch_points(3 * static_cast<std::size_t>(surface.GetNumPatchPoints()));
+  surface.PreparePatchPoints(parts_->points.data(), three, patch_points.data(), three);
+  Face result{surface.IsRegular(), {}};
+  for (const auto& at : uv) {
+    Point p{};
+    surface.Evaluate(at.data(), patch_points.data(), three, p.data());
+    result.points.push_back(p);
   }
   return result;
 }

@@ -2,8 +2,11 @@
 
 #include <oracle/polygon_twin.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace oracle {
@@ -39,5 +42,22 @@ struct OpenSubdivMesh {
 /// With `bilinear` under OpenSubdiv's third scheme, whatever rules.scheme says.
 [[nodiscard]] OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels,
                                                     bool bilinear = false);
+
+/// Limit points of faces by OpenSubdiv's Bfr: in a triangle or quad u runs from corner 0 to corner 1, v to the last one.
+class BfrSurfaces {
+ public:
+  BfrSurfaces(const TaggedMesh& mesh, const Rules& rules);
+  ~BfrSurfaces();
+  struct Face {
+    bool regular;  ///< one polynomial, exact up to rounding
+    std::vector<Point> points;
+  };
+  /// None where Bfr has no surface.
+  [[nodiscard]] std::optional<Face> at(std::size_t face, const std::vector<std::array<double, 2>>& uv) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace oracle
