@@ -22,7 +22,7 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string robot, joints, path, srdf, root, tolerance = "0.1%", primitive_error = "0.2%";
+  std::string robot, joints, path, srdf, group, root, tolerance = "0.1%", primitive_error = "0.2%";
   std::vector<std::string> packages;
   bool visual = false, joined = false, exit_code = false;
 };
@@ -157,7 +157,7 @@ class RobotRun {
     const WorkMonitor monitor = bar.monitor();
     const auto tolerance = [&](double size) { return tolerance_.in_mesh_units(size, 1.0); };
     return first_contacts(
-        robot_, surfaces_, positions_, {.tolerance = tolerance, .joined = options_.joined},
+        robot_, surfaces_, positions_, {.tolerance = tolerance, .joined = options_.joined, .group = options_.group},
         {.threads = options_.threads, .monitor = &monitor, .max_splits = options_.max_splits});
   }
 
@@ -216,7 +216,9 @@ Command robot_command() {
            "times 0, 1, 2 ...; "
            "between them all joints go at constant speeds");
   list.add(Group::own, "--srdf FILE", &options->srdf,
-           "Pairs of links that may touch: disable_collisions of an SRDF file");
+           "Pairs of links that may touch, and groups: an SRDF file");
+  list.add(Group::own, "--group NAME", &options->group,
+           "Only pairs with a link of this group of the SRDF file");
   list.add(Group::own, "--joined", &options->joined, "Also ask pairs of links that a joint joins");
   list.add(Group::own, "--visual", &options->visual,
            "Take the visual shapes instead of the collision shapes");

@@ -46,8 +46,9 @@ struct Robot {
   std::vector<Link> links;  ///< parents before children
   std::vector<Joint> joints;
   std::vector<ControlMesh> meshes;
-  std::vector<std::string> mesh_names;  ///< files, or "box" and so on
-  std::vector<PartPair> allowed;        ///< links that may touch, of SRDF
+  std::vector<std::string> mesh_names;                       ///< files, or "box" and so on
+  std::vector<PartPair> allowed;                             ///< links that may touch, of SRDF
+  std::map<std::string, std::vector<std::uint32_t>> groups;  ///< of links, of SRDF
   std::vector<double>
       outward;  ///< of each mesh, how far it may go beyond its shape: 0 but for cylinders and spheres
 };
@@ -79,8 +80,10 @@ struct RobotOptions {
 /// The same for the bytes of such a file.
 [[nodiscard]] SNUG_API Robot parse_robot(std::string_view bytes, const std::string& path,
                                          const RobotOptions& options = {});
-/// Adds the pairs of links that a file in SRDF allows to touch.
-/// Errors:    InputError (unreadable): likewise, and for links that the robot does not have.
+/// Adds what a file in SRDF says: pairs of links that may touch (disable_collisions; disable_default_collisions without what
+/// enable_collisions has), and groups by links, joints, whose children they mean, chains and other groups.
+/// Errors:    InputError (unreadable): likewise, and for links, joints and groups that are not there, chains that do not lead down,
+///            groups that contain themselves.
 SNUG_API void allow_pairs(Robot& robot, std::string_view bytes, const std::string& path);
 
 /// Positions of all joints, where some are given by name; others are at 0, or where their limits are nearest to it.
@@ -94,8 +97,10 @@ SNUG_API void allow_pairs(Robot& robot, std::string_view bytes, const std::strin
 [[nodiscard]] SNUG_API std::vector<Motion> link_poses(const Robot& robot, std::span<const double> positions);
 
 /// Pairs of links with shapes that can move against each other and are not allowed to touch. Links that a joint joins, also
-/// by way of fixed joints, are left out unless `joined`.
-[[nodiscard]] SNUG_API std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined = false);
+/// by way of fixed joints, are left out unless `joined`. With a group only pairs with a link of it.
+/// Errors:    InputError (value) for a group that the robot does not have.
+[[nodiscard]] SNUG_API std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined = false,
+                                                            const std::string& group = {});
 
 /// The last link that moves both, itself included.
 /// Errors:    InputError (value) for a number that no link has.
@@ -111,6 +116,7 @@ struct LinkContactsOptions {
   /// Shapes this close may be reported as within; `size`: the larger one of two meshes. Default: 0.1 % of it.
   std::function<double(double size)> tolerance{};
   bool joined = false;  ///< also pairs of links that a joint joins
+  std::string group{};  ///< only pairs with a link of this group
 };
 /// When two shapes of two links first meet.
 struct LinkContact {

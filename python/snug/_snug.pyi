@@ -249,6 +249,7 @@ class Robot:
         *,
         tolerance: Length = "0.1%",
         joined: bool = False,
+        group: str = "",
         max_splits: Optional[int] = None,
         threads: int = 0,
         progress: Progress = None,

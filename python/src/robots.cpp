@@ -88,12 +88,13 @@ py::dict poses(const PyRobot& self, const py::object& positions) {
 }
 
 py::list first_contacts(const PyRobot& self, const py::list& path, const py::object& tolerance, bool joined,
-                        const py::object& max_splits, const py::object& threads, const py::object& progress) {
+                        const std::string& group, const py::object& max_splits, const py::object& threads,
+                        const py::object& progress) {
   const Loaded& loaded = self.made();
   std::vector<std::vector<double>> positions;
   for (const auto& each : path)
     positions.push_back(positions_of(loaded.robot, py::reinterpret_borrow<py::object>(each)));
-  LinkContactsOptions options{.joined = joined};
+  LinkContactsOptions options{.joined = joined, .group = group};
   const std::optional<double> one = length_of(tolerance, 1, "tolerance"),
                               two = length_of(tolerance, 2, "tolerance");
   if (one) options.tolerance = [=](double size) { return *one == *two ? *one : *one * size; };
@@ -153,7 +154,8 @@ void add_robots(py::module_& module) {
            "metres}; joints\n"
            "that are not named are at 0, or at the limit nearest to it. Raises ValueError.")
       .def("first_contacts", first_contacts, arg("path"), py::kw_only(), arg("tolerance") = "0.1%",
-           arg("joined") = false, arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
+           arg("joined") = false, arg("group") = "", arg("max_splits") = none, arg("threads") = 0,
+           arg("progress") = none,
            "Which links meet along a path of the joints? A list of (link, link, TimeOfContact), one for each "
            "two "
            "shapes that\n"
@@ -162,7 +164,8 @@ void add_robots(py::module_& module) {
            "speeds.\n"
            "tolerance: metres, or percent of the larger one of two meshes. joined: also pairs of links that "
            "a joint "
-           "joins.\n\n"
+           "joins.\n"
+           "group: only pairs with a link of this group of the SRDF file.\n\n"
            "Guarantee: no contact before `lower`, between the given positions too. Witnesses are in the "
            "frame of "
            "the last link\n"
@@ -182,7 +185,7 @@ void add_robots(py::module_& module) {
       "package://name/, or the\n"
       "folder that holds all packages. root: a folder that other paths may not leave, by default that of "
       "the file.\n"
-      "srdf: a file whose disable_collisions name pairs that may touch. primitive_error: how far meshes of "
+      "srdf: a file with pairs that may touch, and with groups. primitive_error: how far meshes of "
       "cylinders and\n"
       "spheres may go beyond them, as a share of the radius.\n\n"
       "Raises FileError (broken files, cycles of joints, missing meshes, paths outside), ValueError.");

@@ -212,5 +212,56 @@ TEST(urdf, srdf_names_pairs_that_may_touch) {
             "r.srdf:1: SRDF: the robot has no link 'c'");
 }
 
+TEST(urdf, srdf_disables_links_and_has_groups) {
+  const Robot plain = parse(link("a") + link("b") + link("c") + link("d") + joint("ab", "a", "b") +
+                            joint("bc", "b", "c") + joint("ad", "a", "d"));
+  const auto with = [&](const std::string& body) {
+    Robot robot = plain;
+    allow_pairs(robot, "<robot>" + body + "</robot>", "r.srdf");
+    return robot;
+  };
+  const auto index = [&](const char* name) {
+    return static_cast<std::uint32_t>(std::ranges::find(plain.links, name, &Robot::Link::name) -
+                                      plain.links.begin());
+  };
+  Robot robot = with("<disable_default_collisions link='c'/><enable_collisions link1='d' link2='c'/>");
+  EXPECT_EQ(robot.allowed.size(), 2u);
+  for (const PartPair& pair : robot.allowed) {
+    EXPECT_EQ(pair.a, index("c"));
+    EXPECT_NE(pair.b, index("d"));
+  }
+  robot = with(
+      "<group name='all'><group name='arm'/><link name='d'/></group>"
+      "<group name='arm'><chain base_link='a' tip_link='c'/></group><group name='one'><joint "
+      "name='ad'/></group>"
+      "<group_state name='home' group='arm'><joint name='ab' value='0'/></group_state>");
+  ASSERT_EQ(robot.groups.size(), 3u);
+  EXPECT_EQ(robot.groups["arm"], (std::vector{index("b"), index("c")}));
+  EXPECT_EQ(robot.groups["all"].size(), 3u);
+  EXPECT_EQ(robot.groups["one"], std::vector{index("d")});
+  const auto refusal_of = [&](const std::string& body) {
+    return unreadable([&] { static_cast<void>(with(body)); });
+  };
+  EXPECT_EQ(refusal_of("<group name='g'><link name='x'/></group>"),
+            "r.srdf:1: SRDF: the robot has no link 'x'");
+  EXPECT_EQ(refusal_of("<group name='g'><joint name='x'/></group>"),
+            "r.srdf:1: SRDF: the robot has no joint 'x'");
+  EXPECT_EQ(refusal_of("<group name='g'><group name='x'/></group>"), "r.srdf:1: SRDF: there is no group 'x'");
+  EXPECT_EQ(refusal_of("<group name='g'><group name='h'/></group><group name='h'><group name='g'/></group>"),
+            "r.srdf:1: SRDF: the group 'g' contains itself");
+  EXPECT_EQ(refusal_of("<group name='g'><chain base_link='d' tip_link='c'/></group>"),
+            "r.srdf:1: SRDF: no chain leads from 'd' down to 'c'");
+  std::string bomb;
+  for (int k = 0; k < 300; ++k) {
+    bomb += "<group name='g" + std::to_string(k) + "'>";
+    for (int twice = 0; twice < 2 && k < 299; ++twice)
+      bomb += "<group name='g" + std::to_string(k + 1) + "'/>";
+    bomb += "<link name='a'/></group>";
+  }
+  EXPECT_EQ(with(bomb).groups.size(), 300u);
+  for (int k = 300; k < 1001; ++k) bomb += "<group name='g" + std::to_string(k) + "'/>";
+  EXPECT_EQ(refusal_of(bomb), "r.srdf:1: SRDF: more than 1000 groups");
+}
+
 }  // namespace
 }  // namespace snug::urdf_test

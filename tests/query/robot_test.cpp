@@ -95,6 +95,9 @@ TEST(robot, links_that_are_joined_are_left_out) {
   Robot other = robot;
   allow_pairs(other, "<robot><disable_collisions link1='tool' link2='base'/></robot>", "a.srdf");
   EXPECT_EQ(names(pairs_to_check(other)), "base-lower base-hand upper-hand upper-tool ");
+  allow_pairs(other, "<robot><group name='g'><link name='hand'/></group></robot>", "a.srdf");
+  EXPECT_EQ(names(pairs_to_check(other, false, "g")), "base-hand upper-hand ");
+  EXPECT_THROW(static_cast<void>(pairs_to_check(other, false, "h")), InputError);
 }
 
 TEST(robot, motions_in_a_common_frame_are_those_of_the_world) {

@@ -435,23 +435,112 @@ Robot read_robot(const std::string& path, const RobotOptions& options, const Run
   return parse_robot(read_file(path, monitor_of(run)), path, options);
 }
 
+namespace {
+
+class SrdfReader {
+ public:
+  SrdfReader(Robot& robot, std::string_view text, const std::string& name)
+      : robot_(robot), xml_(text, name) {}
+
+  void read() {
+    if (xml_.next() != XmlReader::Event::begin || xml_.element() != "robot")
+      xml_.fail("SRDF: 'robot' is missing: this does not describe a robot");
+    xml_.each_child([&] {
+      const std::string_view kind = xml_.prefix().empty() ? xml_.element() : std::string_view();
+      if (kind == "group") {
+        read_group();
+        return;
+      }
+      if (kind == "disable_collisions") robot_.allowed.push_back({link("link1"), link("link2")});
+      if (kind == "disable_default_collisions") alone_.insert(link("link"));
+      if (kind == "enable_collisions") enabled_.insert(std::minmax(link("link1"), link("link2")));
+      xml_.skip();
+    });
+    static_cast<void>(xml_.next());
+    for (const std::uint32_t own : alone_) {
+      for (std::uint32_t other = 0; other < robot_.links.size(); ++other) {
+        if (other != own && !enabled_.contains(std::minmax(own, other)))
+          robot_.allowed.push_back({own, other});
+      }
+    }
+    for (const auto& [name, parts] : groups_) {
+      std::set<std::string> open, done;
+      std::set<std::uint32_t> links;
+      collect(name, open, done, links);
+      robot_.groups[name].assign(links.begin(), links.end());
+    }
+  }
+
+ private:
+  struct Group {
+    std::vector<std::uint32_t> links;
+    std::vector<std::string> groups;
+  };
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  static constexpr std::size_t most_groups = 1000;  // whatever contains whatever, little time is spent
+
+  std::uint32_t link(std::string_view attribute) {
+    return named(robot_.links, &Robot::Link::name, attribute, "link ");
+  }
+  template <class List, class Name>
+  std::uint32_t named(const List& list, Name name, std::string_view attribute, const char* what) {
+    const std::string own = xml_.required_text(attribute);
+    const auto found = std::ranges::find(list, own, name);
+    if (found == list.end()) xml_.fail(std::string("SRDF: the robot has no ") + what + in_quotes(own));
+    return static_cast<std::uint32_t>(found - list.begin());
+  }
+
+  void read_group() {
+    Group& group = groups_[xml_.required_text("name")];
+    if (groups_.size() > most_groups) xml_.fail("SRDF: more than " + std::to_string(most_groups) + " groups");
+    xml_.each_child([&] {
+      const std::string_view kind = xml_.element();
+      if (kind == "link") group.links.push_back(link("name"));
+      if (kind == "joint")
+        group.links.push_back(
+            robot_.joints[named(robot_.joints, &Robot::Joint::name, "name", "joint ")].child);
+      if (kind == "group") group.groups.push_back(xml_.required_text("name"));
+      if (kind == "chain") add_chain(group);
+      xml_.skip();
+    });
+  }
+
+  void add_chain(Group& group) {
+    const std::uint32_t base = link("base_link"), tip = link("tip_link");
+    for (std::uint32_t own = tip; own != base;) {
+      group.links.push_back(own);
+      const auto joint = robot_.links[own].joint;
+      if (!joint)
+        xml_.fail("SRDF: no chain leads from " + in_quotes(robot_.links[base].name) + " down to " +
+                  in_quotes(robot_.links[tip].name));
+      own = robot_.joints[*joint].parent;
+    }
+  }
+
+  void collect(const std::string& name, std::set<std::string>& open, std::set<std::string>& done,
+               std::set<std::uint32_t>& links) {
+    const auto found = groups_.find(name);
+    if (found == groups_.end()) xml_.fail("SRDF: there is no group " + in_quotes(name));
+    if (done.contains(name)) return;
+    if (!open.insert(name).second) xml_.fail("SRDF: the group " + in_quotes(name) + " contains itself");
+    links.insert(found->second.links.begin(), found->second.links.end());
+    for (const std::string& other : found->second.groups) collect(other, open, done, links);
+    open.erase(name);
+    done.insert(name);
+  }
+
+  Robot& robot_;
+  XmlReader xml_;
+  std::set<std::uint32_t> alone_;
+  std::set<Pair> enabled_;
+  std::map<std::string, Group> groups_;
+};
+
+}  // namespace
+
 void allow_pairs(Robot& robot, std::string_view bytes, const std::string& path) {
   const std::string name = input_name(path);
-  XmlReader xml(plain_text(bytes, name), name);
-  if (xml.next() != XmlReader::Event::begin || xml.element() != "robot")
-    xml.fail("SRDF: 'robot' is missing: this does not describe a robot");
-  const auto link = [&](std::string_view attribute) {
-    const std::string own = xml.required_text(attribute);
-    const auto found = std::ranges::find(robot.links, own, &Robot::Link::name);
-    if (found == robot.links.end()) xml.fail("SRDF: the robot has no link " + in_quotes(own));
-    return static_cast<std::uint32_t>(found - robot.links.begin());
-  };
-  xml.each_child([&] {
-    if (xml.element() == "disable_collisions" && xml.prefix().empty())
-      robot.allowed.push_back({link("link1"), link("link2")});
-    xml.skip();
-  });
-  static_cast<void>(xml.next());
+  SrdfReader(robot, plain_text(bytes, name), name).read();
 }
 
 }  // namespace snug

@@ -93,8 +93,15 @@ std::vector<Motion> link_poses(const Robot& robot, std::span<const double> posit
   return poses;
 }
 
-std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined) {
+std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined, const std::string& group_name) {
   const std::vector<std::uint32_t> group = rigid_groups(robot);
+  std::vector<bool> wanted(robot.links.size(), group_name.empty());
+  if (!group_name.empty()) {
+    const auto found = robot.groups.find(group_name);
+    if (found == robot.groups.end())
+      throw InputError(InputProblem::value, "robot: there is no group '" + group_name + "'");
+    for (const std::uint32_t link : found->second) wanted[link] = true;
+  }
   std::set<std::pair<std::uint32_t, std::uint32_t>> left_out;
   for (const PartPair& pair : robot.allowed) left_out.insert(std::minmax(pair.a, pair.b));
   std::set<std::pair<std::uint32_t, std::uint32_t>> neighbours;
@@ -105,7 +112,7 @@ std::vector<PartPair> pairs_to_check(const Robot& robot, bool joined) {
     for (std::uint32_t b = a + 1; b < robot.links.size(); ++b) {
       if (robot.links[a].shapes.empty() || robot.links[b].shapes.empty() || group[a] == group[b]) continue;
       if (!joined && neighbours.contains(std::minmax(group[a], group[b]))) continue;
-      if (!left_out.contains({a, b})) pairs.push_back({a, b});
+      if ((wanted[a] || wanted[b]) && !left_out.contains({a, b})) pairs.push_back({a, b});
     }
   }
   return pairs;
@@ -155,9 +162,9 @@ struct ShapePair {
   std::array<std::size_t, 2> shapes;
 };
 
-std::vector<ShapePair> shape_pairs(const Robot& robot, bool joined) {
+std::vector<ShapePair> shape_pairs(const Robot& robot, const LinkContactsOptions& options) {
   std::vector<ShapePair> pairs;
-  for (const PartPair& links : pairs_to_check(robot, joined)) {
+  for (const PartPair& links : pairs_to_check(robot, options.joined, options.group)) {
     for (std::size_t a = 0; a < robot.links[links.a].shapes.size(); ++a) {
       for (std::size_t b = 0; b < robot.links[links.b].shapes.size(); ++b) pairs.push_back({links, {a, b}});
     }
@@ -201,7 +208,7 @@ std::vector<LinkContact> first_contacts(const Robot& robot, std::span<const Surf
   const WorkMonitor& monitor = monitor_of(run);
   const WorkMonitor quiet = stop_only(run);
   for (const Surface& surface : surfaces) surface.prepare({.threads = run.threads, .monitor = &quiet});
-  const std::vector<ShapePair> pairs = shape_pairs(robot, options.joined);
+  const std::vector<ShapePair> pairs = shape_pairs(robot, options);
   std::vector<std::optional<LinkContact>> found(pairs.size());
   std::atomic<std::size_t> done{0};
   parallel_for(pairs.size(), run.threads, [&](std::size_t begin, std::size_t end) {
