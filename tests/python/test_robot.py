@@ -35,6 +35,15 @@ def test_first_contacts_are_proved_between_the_positions(arm):
     assert len(arm.first_contacts(fold[:1], joined=True)) == 3
 
 
+def test_groups_restrict_what_is_asked(arm, tmp_path):
+    (tmp_path / "arm.srdf").write_text("<robot><group name='wrist'><link name='lower'/></group></robot>")
+    grouped = snug.urdf(tmp_path / "arm.urdf", srdf=tmp_path / "arm.srdf")
+    pairs = [(a, b) for a, b, _ in grouped.first_contacts([{}], joined=True, group="wrist")]
+    assert pairs == [("base", "lower"), ("upper", "lower")]
+    with pytest.raises(ValueError, match="no group 'arm'"):
+        grouped.first_contacts([{}], group="arm")
+
+
 def test_wrong_robots_and_positions_are_told(arm, tmp_path):
     with pytest.raises(ValueError, match="no joint is called 'knee'"):
         arm.poses({"knee": 1})
