@@ -46,6 +46,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Robot robot = parse_robot(bytes, "input.urdf", options);
     check(robot);
     allow_pairs(robot, bytes, "input.srdf");
+    for (const auto& [name, links] : robot.groups) {
+      for (const std::uint32_t link : links) fuzz::claim(link < robot.links.size(), "groups have links");
+      static_cast<void>(pairs_to_check(robot, true, name));
+    }
   } catch (const InputError& error) {
     fuzz::claim_one_line(error);
   }
