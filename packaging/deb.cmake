@@ -72,6 +72,7 @@ if(TARGET snug_python)
   install(TARGETS snug_python LIBRARY DESTINATION ${python_packages}/snug COMPONENT python)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/snug DESTINATION ${python_packages} COMPONENT python
           FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  install(FILES ${PROJECT_SOURCE_DIR}/web/page/still.html DESTINATION ${python_packages}/snug COMPONENT python)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-snug)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

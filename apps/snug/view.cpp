@@ -1,5 +1,9 @@
+#include <snug/tessellate.h>
+
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +18,7 @@
 #include "pose.h"
 #include "progress_bar.h"
 #include "scene_file.h"
+#include "still_page.h"
 
 namespace snug::command {
 namespace {
@@ -27,18 +32,16 @@ struct Options : CommonOptions {
 constexpr std::string_view data_begins = R"(<script type="application/json" id="snug-data">)";
 constexpr std::string_view data_ends = "</script>";
 
-// Where the page lies: installed, beside the command; in a clone, where `make page` puts it.
-std::string find_page() {
+// Where the page with live answers lies: installed, beside the command; in a clone, where `make page` puts it. Builds without
+// emscripten have none, and fill the still page, which the command holds itself.
+std::optional<std::string> find_page() {
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
   for (const char* place : {"../share/snug/view.html", "../../web/snug.html"}) {
     const std::filesystem::path page = (folder / place).lexically_normal();
     if (std::filesystem::exists(page, ignored)) return page.string();
   }
-  throw InputError(InputProblem::unreadable,
-                   fmt::format("view: the page to fill is not there ({}); build it with make page, or give "
-                               "--template FILE",
-                               (folder / "../share/snug/view.html").lexically_normal().string()));
+  return {};
 }
 
 std::string base64(std::string_view bytes) {
@@ -76,20 +79,46 @@ void write_place(JsonWriter& json, const Motion& pose) {
   json.end_array();
 }
 
-// A file's content; parts name it by its place among all.
-void write_file(JsonWriter& json, const std::string& name, std::string_view bytes) {
-  json.begin_object().field("name", name).field("base64", base64(bytes)).end_object();
+template <typename T>
+std::string bytes_of(const std::vector<T>& numbers) {
+  const auto bytes = std::as_bytes(std::span(numbers));
+  return base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+// Triangles within 0.2 % of the size, if not too many are needed, for the page that cannot make its own.
+void write_still(JsonWriter& json, const Surface& surface) {
+  TessellateOptions how;
+  how.error = 0.002 * surface.size();
+  how.max_triangles = 60000;
+  const Tessellation made = tessellate(surface, how);
+  std::vector<float> positions;
+  for (const Point3& p : made.positions) {
+    for (const double x : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(x));
+  }
+  std::vector<std::uint32_t> triangles;
+  for (const auto& corners : made.triangles)
+    triangles.insert(triangles.end(), corners.begin(), corners.end());
+  json.key("still").begin_object().field("positions", bytes_of(positions));
+  json.field("triangles", bytes_of(triangles)).end_object();
+}
+
+// A file's content, which parts name by its place among all; for the still page, what is drawn of it.
+void write_file(JsonWriter& json, const std::string& name, std::string_view bytes, const Surface& surface,
+                bool still) {
+  json.begin_object().field("name", name).field("base64", base64(bytes));
+  if (still) write_still(json, surface);
+  json.end_object();
 }
 
 // `files` and `parts` of the meshes on the command line; equal names are one file.
-void write_meshes(JsonWriter& json, const Options& options, const std::vector<Motion>& poses) {
+void write_meshes(JsonWriter& json, const Options& options, const std::vector<Motion>& poses, bool still) {
   std::map<std::string, std::size_t> files;
   json.key("files").begin_array();
   for (const std::string& path : options.meshes) {
     if (!files.emplace(path, files.size()).second) continue;
     // Refused here, not in the page.
-    static_cast<void>(read_surface(path, options, options.scheme));
-    write_file(json, path, read_file(path));
+    const Surface surface = read_surface(path, options, options.scheme);
+    write_file(json, path, read_file(path), surface, still);
   }
   json.end_array().key("parts").begin_array();
   for (std::size_t part = 0; part < options.meshes.size(); ++part) {
@@ -110,11 +139,11 @@ std::string as_read(const SceneMesh& mesh, const Surface& surface) {
 }
 
 // `files` and `parts` of a scene. `options`: what the command about two parts needs, to read a mesh in the same way.
-void write_scene(JsonWriter& json, const LoadedScene& loaded) {
+void write_scene(JsonWriter& json, const LoadedScene& loaded, bool still) {
   const std::vector<SceneMesh>& meshes = loaded.text.meshes;
   json.key("files").begin_array();
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    write_file(json, meshes[i].file, as_read(meshes[i], loaded.surfaces[i]));
+    write_file(json, meshes[i].file, as_read(meshes[i], loaded.surfaces[i]), loaded.surfaces[i], still);
   }
   json.end_array().key("parts").begin_array();
   for (const SceneText::Part& part : loaded.text.parts) {
@@ -132,14 +161,15 @@ void write_scene(JsonWriter& json, const LoadedScene& loaded) {
 }
 
 // Data of the page, as a JSON document without '<', which might look like an end of the script.
-std::string data_of(const Options& options, const std::vector<Motion>& poses, const LoadedScene* scene) {
+std::string data_of(const Options& options, const std::vector<Motion>& poses, const LoadedScene* scene,
+                    bool still) {
   std::string text;
   JsonWriter json([&](std::string_view part) { text += part; }, JsonWriter::Lines::one);
   json.begin_object();
   if (scene) {
-    write_scene(json, *scene);
+    write_scene(json, *scene, still);
   } else {
-    write_meshes(json, options, poses);
+    write_meshes(json, options, poses, still);
     if (const std::optional<double> angle = sharp_angle(options)) json.field("sharp", *angle);
   }
   if (!options.answer.empty()) json.field("answer", read_answer(options.answer));
@@ -191,8 +221,15 @@ ExitStatus run(const Options& options) {
         options.scene, options, options.nearest_rigid,
         [&](const std::string& path) { return read_file(path, monitor); }, monitor);
   }
-  const std::string name = options.page.empty() ? find_page() : options.page;
-  const std::string page = filled(read_file(name), name, data_of(options, poses, scene ? &*scene : nullptr));
+  const std::optional<std::string> name = options.page.empty() ? find_page() : options.page;
+  const std::string data = data_of(options, poses, scene ? &*scene : nullptr, !name);
+  const std::string page =
+      name ? filled(read_file(*name), *name, data) : filled(std::string(still_page), "still.html", data);
+  if (const Notes note = notes_for(options); note && !name) {
+    note(
+        "parts stay where they are: this build of snug lacks the page with live answers, which make page "
+        "builds");
+  }
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("view", to_standard_output);

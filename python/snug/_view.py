@@ -1,4 +1,4 @@
-"""The page of `snug view`: surfaces that are moved in a browser, with live answers."""
+"""The page of `snug view`: surfaces that are moved in a browser, with live answers; where that page was not built, a still one."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from ._snug import Collision, Distance, Surface, _pose
 
 _BEGIN = '<script type="application/json" id="snug-data">'
 _END = "</script>"
+_STILL = "still.html"
 
 
 class Page:
@@ -42,9 +43,9 @@ def view(
 
     path: where it is written, too. poses: for each surface None or a pose as collide() takes it, (4, 4), (3, 4), (R, t) or
     (quaternion w x y z, t); an answer does not know the poses that it was asked about. template: the page to fill, if not
-    the installed one.
+    the installed one. Where none is installed, the page shows the parts from all sides, but they stay where they are.
 
-    Raises FileError if the page to fill is missing or `path` cannot be written, PoseError, TypeError, ValueError.
+    Raises FileError if `template` is missing or `path` cannot be written, PoseError, TypeError, ValueError.
     """
     surfaces = [part for part in parts if isinstance(part, Surface)]
     answers = [part for part in parts if not isinstance(part, Surface)]
@@ -55,19 +56,24 @@ def view(
     places = [_place(pose, i) for i, pose in enumerate(poses or [])]
     if len(places) > len(surfaces):
         raise ValueError(f"view: {len(places)} poses, but {len(surfaces)} surfaces")
-    data: Dict[str, Any] = {"parts": [_part(surface, i) for i, surface in enumerate(surfaces)]}
+    page = _page(template)
+    still = page.name == _STILL
+    data: Dict[str, Any] = {
+        "files": [_file(surface, i, still) for i, surface in enumerate(surfaces)],
+        "parts": [{"name": _name(i), "file": i, "scheme": surface.scheme} for i, surface in enumerate(surfaces)],
+    }
     for part, place in zip(data["parts"], places):
         if place is not None:
             part["place"] = place
     if answers:
         data["answer"] = json.dumps(_answer(answers[0], places + [None, None]))
-    page = _filled(template, json.dumps(data).replace("<", "\\u003c"))
+    text = _filled(page, json.dumps(data).replace("<", "\\u003c"))
     if path is not None:
         try:
-            Path(path).write_text(page, encoding="utf-8")
+            Path(path).write_text(text, encoding="utf-8")
         except OSError as error:
             raise FileError(f"{path}: {error.strerror}", str(path)) from error
-    return Page(page)
+    return Page(text)
 
 
 def _place(pose: Any, i: int) -> Optional[List[float]]:
@@ -76,13 +82,26 @@ def _place(pose: Any, i: int) -> Optional[List[float]]:
     return [float(number) for number in _pose(pose, f"poses[{i}]")[:3].reshape(-1)]
 
 
-def _part(surface: Surface, i: int) -> Dict[str, Any]:
+def _name(i: int) -> str:
+    return f"{chr(ord('a') + i) if i < 26 else i}.obj"
+
+
+def _file(surface: Surface, i: int, still: bool) -> Dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "part.obj"
         surface.write(file)
-        content = file.read_bytes()
-    name = chr(ord("a") + i) if i < 26 else str(i)
-    return {"name": f"{name}.obj", "scheme": surface.scheme, "base64": base64.b64encode(content).decode("ascii")}
+        made: Dict[str, Any] = {"name": _name(i), "base64": _base64(file.read_bytes())}
+    if still:  # that page makes no triangles itself
+        mesh = surface.tessellate("0.2%", max_triangles=60000, normals=False)
+        made["still"] = {
+            "positions": _base64(np.asarray(mesh.positions, "<f4").tobytes()),
+            "triangles": _base64(np.asarray(mesh.triangles, "<u4").tobytes()),
+        }
+    return made
+
+
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")
 
 
 def _answer(answer: Union[Collision, Distance], places: Sequence[Optional[List[float]]]) -> Dict[str, Any]:
@@ -101,21 +120,24 @@ def _answer(answer: Union[Collision, Distance], places: Sequence[Optional[List[f
     return document
 
 
-def _filled(template: Union[str, "os.PathLike[str]", None], data: str) -> str:
+def _page(template: Union[str, "os.PathLike[str]", None]) -> Path:
+    if template is not None:
+        return Path(template)
     folder = Path(__file__).parent
     # In the package; in a clone, where `make page` puts it; beside the command of the Debian package snug.
-    places = ("view.html", "../../../web/snug.html", "../../../../share/snug/view.html")
-    candidates = [Path(template)] if template is not None else [folder / place for place in places]
-    for candidate in candidates:
-        if candidate.exists():
-            break
-    else:
-        raise FileError(
-            "view: the page to fill is not there; build it with make page before the package, or give template=", str(candidates[0])
-        )
-    page = candidate.read_text(encoding="utf-8")
+    for place in ("view.html", "../../../web/snug.html", "../../../../share/snug/view.html"):
+        if (folder / place).exists():
+            return folder / place
+    return folder / _STILL
+
+
+def _filled(path: Path, data: str) -> str:
+    try:
+        page = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"view: {path}: {error.strerror}; make page builds the page to fill", str(path)) from error
     begin = page.find(_BEGIN)
     end = page.find(_END, begin)
     if begin < 0 or end < 0:
-        raise FileError(f"{candidate}: is not snug's page; build it with make page", str(candidate))
+        raise FileError(f"{path}: is not snug's page; build it with make page", str(path))
     return page[: begin + len(_BEGIN)] + data + page[end:]

@@ -1,3 +1,7 @@
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -130,6 +134,34 @@ TEST_F(View, takes_files_of_any_length_and_any_bytes) {
     const std::string mesh = folder.file("mesh.obj");
     put(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + more);
     EXPECT_EQ(decoded(data({mesh})["files"][0]["base64"]), content(mesh));
+  }
+}
+
+// The page that the command itself holds, when it stands in a folder with none beside it.
+TEST_F(View, shows_still_parts_where_there_is_no_page_with_answers) {
+  const std::string pin = model("pin.obj"), star = model("star.obj"), bin = folder.file("bin"),
+                    copy = bin + "/snug";
+  std::filesystem::create_directory(bin);
+  std::filesystem::copy_file(SNUG_COMMAND, copy);
+  const Surroundings elsewhere{[&] {
+                                 ::execl(copy.c_str(), copy.c_str(), "view", pin.c_str(), star.c_str(),
+                                         pin.c_str(), "-o", made.c_str(), nullptr);
+                               },
+                               {}};
+  const Outcome outcome = run_snug_in(elsewhere, {"view"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("parts stay where they are"), std::string::npos) << outcome.err;
+  const std::string text = content(made), begins = std::string(head).substr(6);
+  const auto at = text.find(begins) + begins.size();
+  const auto json = nlohmann::json::parse(text.substr(at, text.find("</script>", at) - at));
+  ASSERT_EQ(json["files"].size(), 2u);
+  for (const auto& file : json["files"]) {
+    const std::string positions = decoded(file["still"]["positions"]),
+                      triangles = decoded(file["still"]["triangles"]);
+    std::vector<std::uint32_t> corners(triangles.size() / 4);
+    std::memcpy(corners.data(), triangles.data(), triangles.size());
+    ASSERT_GT(corners.size(), 300u);
+    EXPECT_EQ(*std::max_element(corners.begin(), corners.end()) + 1, positions.size() / 12);
   }
 }
 

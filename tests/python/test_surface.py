@@ -1,7 +1,10 @@
 """Surfaces: how they are made, seen, changed, written, copied."""
 
+import base64
 import copy
 import gc
+import json
+import pathlib
 import pickle
 import sys
 import types
@@ -313,6 +316,21 @@ def test_view(cube, tmp_path):
         snug.view(hit, cube, template=template)
     with pytest.raises(snug.FileError, match="make page"):
         snug.view(cube, template=tmp_path / "none.html")
+    data = json.loads(page.html.split(">", 2)[2].split("</script>")[0])
+    assert [part["file"] for part in data["parts"]] == [0, 1] and len(data["files"]) == 2
+    assert all("still" not in file for file in data["files"])
+
+
+def test_view_without_the_page_with_answers(cube, monkeypatch):
+    from snug import _view
+
+    still = pathlib.Path(_view.__file__).parent / "still.html"
+    monkeypatch.setattr(_view, "_page", lambda template: still)
+    page = snug.view(cube).html
+    data = json.loads(page.split('id="snug-data">')[1].split("</script>")[0])
+    positions = np.frombuffer(base64.b64decode(data["files"][0]["still"]["positions"]), "<f4").reshape(-1, 3)
+    triangles = np.frombuffer(base64.b64decode(data["files"][0]["still"]["triangles"]), "<u4").reshape(-1, 3)
+    assert len(triangles) > 100 and triangles.max() + 1 == len(positions) and np.abs(positions).max() <= 1
 
 
 def test_write_step(tmp_path):
