@@ -19,7 +19,7 @@ ctest = ctest --parallel $(shell expr $(JOBS) + 1) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: check-all deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs proofs check asan tsan fuzz install-packages clean
+.PHONY: check-all blender deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs proofs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -74,8 +74,13 @@ python:  ## the Python module: build/release/python, or build/python/python wher
 	@echo "The module is staged: export PYTHONPATH=$$PWD/build/$(python_preset)/python"
 
 wheel:  ## the same as a wheel: build/wheel
-	@scripts/install_packages build python
+	@scripts/install_packages build python wheel
 	@mkdir -p build/wheel && cd python && /usr/bin/python3 -c "import build_backend; print('build/wheel/' + build_backend.build_wheel('../build/wheel'))"
+
+blender:  ## the extension for Blender, with the wheel inside: build/snug_blender.zip
+	@scripts/install_packages build python wheel
+	@mkdir -p build/wheel && rm -f build/wheel/*.whl && cd python && /usr/bin/python3 -c "import build_backend; build_backend.build_wheel('../build/wheel')"
+	@blender/build build/wheel/*.whl build/snug_blender.zip
 
 notebooks: python  ## executes the notebooks: build/notebooks
 	@scripts/install_packages notebooks
