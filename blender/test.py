@@ -117,9 +117,9 @@ def surface_of(obj):
 
 
 def seen_points(obj):
-    """Blender's own points, in the world."""
-    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    return cages._points(mesh, obj)
+    """Blender's own points, which it puts into the world itself."""
+    seen = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return np.array([seen.matrix_world @ vertex.co for vertex in seen.data.vertices], float)
 
 
 def farthest(obj):

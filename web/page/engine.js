@@ -35,8 +35,6 @@ function keep(part, surface) {
   if (before && ![...parts.values()].includes(before)) before.delete();
 }
 
-const texts = ([lower, upper]) => [snug.textAtMost(lower), Number.isFinite(upper) ? snug.textAtLeast(upper) : null];
-
 const operations = {
   async start({ wasm }) {
     snug = await Snug({ wasm });
@@ -77,7 +75,6 @@ const operations = {
       collision,
       distance,
       milliseconds,
-      texts: { collision: texts(collision.distance), distance: texts(distance.distance) },
     };
   },
   // Of the distance where there is one, else of what collide says.
@@ -95,10 +92,7 @@ const operations = {
       hull && { positions: Float32Array.from(hull.positions), triangles: hull.triangles, gap: hull.gap };
     return { ...hulls, inner: drawn(hulls.inner), outer: drawn(hulls.outer) };
   },
-  depth({ a, b, poseA, poseB }) {
-    const found = snug.penetration(parts.get(a), parts.get(b), { poseA, poseB });
-    return { ...found, texts: texts(found.depth) };
-  },
+  depth: ({ a, b, poseA, poseB }) => snug.penetration(parts.get(a), parts.get(b), { poseA, poseB }),
   pose: ({ steps }) => snug.pose(steps),
 };
 

@@ -1,5 +1,6 @@
 // The page: asks the worker, and tells what it answers.
 
+import { interval } from "./digits.js";
 import { View } from "./view.js";
 import bracket from "../../examples/models/bracket.obj";
 import pin from "../../examples/models/pin.obj";
@@ -15,7 +16,7 @@ const many_parts = 8;
 const usual_tolerance = tolerances.indexOf("0.1");
 const schemes = ["auto", "loop", "catmark", "doo-sabin", "midedge", "bilinear", "flat"];
 const examples = [
-  { name: "Bracket and pin", parts: [["bracket.obj", bracket], ["pin.obj", pin]], rotate: [135, [0, 0, 1]], move: [0.05, 0.05, 0.5], view: [0.04, 0.11, 1] },
+  { name: "Bracket and pin", parts: [["bracket.obj", bracket], ["pin.obj", pin]], rotate: [135, [0, 0, 1]], move: [0.05, 0.05, 0.5], view: [0.18, 0.22, 1] },
   { name: "Star and ring", parts: [["star.obj", star], ["ring.obj", ring]], rotate: [0, [0, 0, 1]], move: [6, 0, 0], view: [0.2, 0.4, 1] },
   { name: "Figure and pawn", parts: [["figure.obj", figure], ["pawn.obj", pawn]], rotate: [0, [0, 0, 1]], move: [3, 0, 0], view: [0.3, 0.25, 1] },
 ];
@@ -117,8 +118,8 @@ const words = {
   undecided: "Undecided",
 };
 
-function sentence({ collision, question, texts }) {
-  const [lower, upper] = texts.collision;
+function sentence({ collision, question }) {
+  const [lower, upper] = interval(collision.distance);
   if (collision.verdict === "separated") return "Proved: the limit surfaces do not touch.";
   if (collision.verdict === "within") return `Proved: two points, one on each surface, are at most ${upper} apart.`;
   if (collision.verdict === "intersecting") {
@@ -134,7 +135,23 @@ function verdictWords(verdict, title, text) {
   $("sentence").textContent = text;
 }
 
-const point_text = (p) => p.map((x) => Number(x.toPrecision(8))).join("  ");
+const point_text = (p) => p.map((x) => String(x)).join("  ");
+const looks = [
+  { name: "surfaces and cages", on: ["show-surface", "show-cage"] },
+  { name: "surfaces", on: ["show-surface"] },
+  { name: "triangles", on: ["show-surface", "show-mesh"] },
+  { name: "adaptive triangles", on: ["show-surface", "show-mesh", "adaptive"] },
+  { name: "enclosures", on: ["show-surface", "show-enclosures"] },
+  { name: "hulls", on: ["show-surface", "show-hulls"] },
+];
+const layer_names = ["show-surface", "show-cage", "show-mesh", "adaptive", "show-enclosures", "show-hulls"];
+
+function look(index) {
+  $("look").value = index;
+  for (const id of layer_names) $(id).checked = looks[index].on.includes(id);
+  visibility();
+  showLayers();
+}
 
 function place_text(at, part) {
   if (!at) return "";
@@ -147,9 +164,9 @@ const inContact = ({ collision, distance }) => collision.verdict === "intersecti
 const seenAnswer = ({ collision, distance }) => (collision.verdict === "intersecting" && collision.witness ? collision : distance);
 
 function show(answer) {
-  const { collision, distance, texts, milliseconds } = answer;
+  const { collision, distance, milliseconds } = answer;
   verdictWords(collision.verdict, words[collision.verdict], sentence(answer));
-  const [lower, upper] = texts.distance;
+  const [lower, upper] = interval(distance.distance);
   $("interval").textContent = inContact(answer) ? "0" : `${lower} to ${upper}`;
   $("exact").textContent = inContact(answer) ? "contact is proved" : `exactly ${distance.distance.join(" to ")}`;
   const { witness, witnessAt } = seenAnswer(answer);
@@ -162,7 +179,31 @@ function show(answer) {
   showCommands(answer);
   compareWithFile(answer);
   overlay();
+  storyGoes(answer);
 }
+
+// Three steps for who opens the page without parts of their own.
+
+const steps = [
+  { title: "Cages lie", text: "The pin's tip is inside the bracket's cage, yet the surfaces do not touch: their distance is proved, and marked." },
+  { title: "Now drag the pin", text: "Push it into the bracket. Each place is answered at once, and a verdict is never a guess." },
+  { title: "Take the proof along", text: "Download it: snug-check verifies it, a program that shares no code with this one." },
+];
+let step = -1;
+
+function tellStory(next) {
+  step = next;
+  $("story").hidden = step < 0 || step >= steps.length;
+  if ($("story").hidden) return;
+  $("story").classList.toggle("last", step + 1 === steps.length);
+  $("story-title").textContent = steps[step].title;
+  $("story-text").textContent = steps[step].text;
+  $("story-next").textContent = step + 1 < steps.length ? "Next" : "Close";
+  [...document.querySelectorAll(".steps i")].forEach((mark, i) => mark.classList.toggle("on", i <= step));
+  if (step === 1) look(1);
+}
+// Who has dragged it there has done the second step.
+const storyGoes = ({ collision }) => step === 1 && collision.verdict === "intersecting" && tellStory(2);
 
 // The same questions to the command.
 
@@ -255,7 +296,7 @@ function overlay() {
   put(tag, a && b ? [(a[0] + b[0]) / 2, Math.min(a[1], b[1]) - 18] : null);
   if (a && b) {
     const text = tag.querySelector("text");
-    const words = apart ? `${state.answer.texts.distance[0]} to ${state.answer.texts.distance[1]}` : "contact";
+    const words = apart ? interval(state.answer.distance.distance).join(" to ") : "contact";
     if (text.textContent !== words) {
       text.textContent = words;
       const box = text.getBBox();
@@ -273,8 +314,8 @@ function names() {
     const part = view.parts[state.pair[side]];
     const shown = state.parts[state.pair[side]]?.info && part?.sphere;
     const sphere = shown && part.placedSphere();
-    const { up } = view.axes();
-    const at = shown && view.seen([0, 1, 2].map((k) => sphere.center.getComponent(k) + 0.62 * sphere.radius * up[k]));
+    const { up, right } = view.axes();
+    const at = shown && view.seen([0, 1, 2].map((k) => sphere.center.getComponent(k) + sphere.radius * (0.6 * up[k] - 0.55 * right[k])));
     label.hidden = !at || (side === 1 && state.pair[0] === state.pair[1]);
     if (!at) return;
     label.textContent = "AB"[side];
@@ -286,8 +327,11 @@ function names() {
 
 // Moving.
 
+const handleMoving = () => view?.handlesTo(view.parts[state.pair[state.moves]], $("handles").value);
+
 function moved(part) {
   view?.part(state.parts.indexOf(part)).place(part.pose);
+  handleMoving();
   view?.draw();
   ask();
 }
@@ -303,26 +347,56 @@ function moveAlong(direction, by) {
   moveTo(part, part.pose[3] + by * direction[0], part.pose[7] + by * direction[1], part.pose[11] + by * direction[2]);
 }
 
-// About the middle of the part, which stays where it is.
+const middleOf = (part) => view.part(state.parts.indexOf(part)).placedSphere().center.toArray();
+
+// From a pose, about a point, which stays where it is.
+async function turned(pose, middle, axis, degrees) {
+  const there = await engine.ask("pose", { steps: { after: pose, move: middle.map((x) => -x) } });
+  const turned = await engine.ask("pose", { steps: { after: there, axis, degrees } });
+  return engine.ask("pose", { steps: { after: turned, move: middle } });
+}
+
 async function turnPart(degrees) {
   const part = moving();
-  const { center } = view.part(state.parts.indexOf(part)).placedSphere();
-  const middle = [center.x, center.y, center.z];
-  const back = middle.map((x) => -x);
   try {
-    const there = await engine.ask("pose", { steps: { after: part.pose, move: back } });
-    const turned = await engine.ask("pose", { steps: { after: there, axis: view.axes().forward, degrees } });
-    part.pose = await engine.ask("pose", { steps: { after: turned, move: middle } });
+    part.pose = await turned(part.pose, middleOf(part), view.axes().forward, degrees);
     moved(part);
   } catch (error) {
     tell(error.message);
   }
 }
 
+// What handles do: always from where they were taken hold of. Of turns the last one counts that was asked for.
+let grip = null;
+async function byHandles(what) {
+  if (what === "begin") {
+    grip = { part: moving(), pose: moving().pose, middle: middleOf(moving()), wanted: null, busy: false };
+    return;
+  }
+  const { part, pose, middle } = grip;
+  if (what.move) return moveTo(part, pose[3] + what.move[0], pose[7] + what.move[1], pose[11] + what.move[2]);
+  grip.wanted = what;
+  if (grip.busy) return;
+  const mine = grip;
+  mine.busy = true;
+  while (mine.wanted) {
+    const { axis, degrees } = mine.wanted;
+    mine.wanted = null;
+    try {
+      part.pose = await turned(pose, middle, axis, degrees);
+      moved(part);
+    } catch (error) {
+      tell(error.message);
+    }
+  }
+  mine.busy = false;
+}
+
 function setMoves(side) {
   state.moves = side;
   document.querySelector(`input[name="moves"][value="${side}"]`).checked = true;
   if (view) names();
+  handleMoving();
 }
 
 function putBack() {
@@ -331,6 +405,7 @@ function putBack() {
     view?.part(state.parts.indexOf(part)).place(part.pose);
   }
   view?.fit();
+  handleMoving();
   ask();
 }
 
@@ -386,7 +461,7 @@ function listenToPointers() {
       view.renderer.domElement.dispatchEvent(again);
       return;
     }
-    if (event.button !== 0 || !event.isPrimary) return;
+    if (event.button !== 0 || !event.isPrimary || view.overHandle(event.clientX, event.clientY)) return;
     const hit = view.hit(event.clientX, event.clientY);
     if (!hit) return;
     const side = state.pair.indexOf(hit.part);
@@ -645,6 +720,7 @@ async function open(parts, direction) {
   cards();
   visibility();
   view?.fit(direction);
+  handleMoving();
   if (state.parts.length === 1) verdictWords("one", "One part", "Drop another file to compare it with this one.");
   await ask();
   await showLayers();
@@ -677,6 +753,11 @@ function listenToControls() {
     silence();
     ask();
   };
+  $("look").append(...looks.map(({ name }, i) => new Option(name, i)));
+  $("look").onchange = () => look(Number($("look").value));
+  $("handles").onchange = handleMoving;
+  $("story-next").onclick = () => tellStory(step + 1);
+  $("story-skip").onclick = () => tellStory(-1);
   for (const id of ["show-surface", "show-cage", "show-mesh"]) $(id).onchange = visibility;
   for (const id of ["show-enclosures", "show-hulls", "adaptive"]) $(id).onchange = showLayers;
   const sharpen = async () => {
@@ -699,7 +780,8 @@ function listenToControls() {
     $("depth-text").textContent = "measuring\u2026";
     try {
       const found = await engine.ask("depth", { a, b, poseA, poseB });
-      $("depth-text").textContent = `A translation of B between ${found.texts[0]} and ${found.texts[1]} long separates them: ${point_text(found.translation)} does.`;
+      const [least, most] = interval(found.depth);
+      $("depth-text").textContent = `A translation of B between ${least} and ${most} long separates them: ${point_text(found.translation)} does.`;
     } catch (error) {
       $("depth-text").textContent = "";
       tell(error.message);
@@ -765,6 +847,7 @@ async function start() {
   listenToControls();
   try {
     view = new View($("stage"), overlay);
+    view.onHandles = byHandles;
     view.onScheme(() => {
       for (const [index, part] of state.parts.entries()) {
         if (!part.info) continue;
@@ -786,7 +869,10 @@ async function start() {
     await engine.ask("start", { wasm }, [wasm]);
     const data = JSON.parse($("snug-data").textContent);
     if (data) await openData(data);
-    else await openExample(examples[0]);
+    else {
+      await openExample(examples[0]);
+      tellStory(0);
+    }
   } catch (error) {
     verdictWords("undecided", "No answer", "The library could not be started.");
     tell(error.message);

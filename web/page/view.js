@@ -1,11 +1,12 @@
 // What is seen: parts with their cages, enclosures and hulls; the camera; which part is under a pointer. Knows no answers.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineDashedMaterial,
-  LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, MOUSE, PerspectiveCamera, Plane, Raycaster, Scene, Sphere, TOUCH,
-  Vector2, Vector3, WebGLRenderer, Box3,
+  Box3, BufferAttribute, BufferGeometry, CircleGeometry, DirectionalLight, DoubleSide, Group, HemisphereLight, LineBasicMaterial,
+  LineDashedMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, MeshStandardMaterial, MOUSE, Object3D,
+  PCFShadowMap, PerspectiveCamera, Plane, Raycaster, Scene, ShadowMaterial, Sphere, TOUCH, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const colours = () =>
@@ -61,8 +62,9 @@ class SeenPart {
   }
   shape(shape) {
     const geometry = geometryOf(shape);
-    const surface = new Mesh(geometry, new MeshLambertMaterial({ color: this.colour(), side: DoubleSide, polygonOffset: true,
-      polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+    const surface = new Mesh(geometry, new MeshStandardMaterial({ color: this.colour(), roughness: 0.5, metalness: 0, side: DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+    surface.castShadow = surface.receiveShadow = true;
     surface.userData.part = this.index;
     this.put("surface", surface);
     this.put("mesh", new Mesh(geometry, new MeshBasicMaterial({ color: colours().cage, wireframe: true, transparent: true, opacity: 0.55 })));
@@ -114,20 +116,82 @@ export class View {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     stage.append(this.renderer.domElement);
-    const light = new DirectionalLight(0xffffff, 2.2);
-    light.position.set(-0.5, 0.8, 1);
-    this.camera.add(light);
-    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.1));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.sun = new DirectionalLight(0xffffff, 2.3);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.radius = 5;
+    const fill = new DirectionalLight(0xffffff, 0.5);
+    fill.position.set(0.6, -0.2, 1);
+    this.camera.add(fill);
+    this.ground = new Mesh(new CircleGeometry(1, 64), new ShadowMaterial({ opacity: dark.matches ? 0.4 : 0.16 }));
+    this.ground.rotation.x = -Math.PI / 2;
+    this.ground.receiveShadow = true;
+    this.scene.add(this.camera, this.sun, this.sun.target, new HemisphereLight(0xffffff, 0x8d99a6, 1.5), this.ground);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.ROTATE };
     this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_ROTATE };
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.draw());
+    this.listenToHandles();
     this.parts = [];
     this.raycaster = new Raycaster();
     this.waiting = false;
     new ResizeObserver(() => this.resize()).observe(stage);
     this.resize();
+  }
+  // Arrows or rings at the part that moves. `onHandles` is given how far they were dragged: {move} or {axis, degrees}.
+  listenToHandles() {
+    this.held = new Object3D();
+    this.scene.add(this.held);
+    this.handles = new TransformControls(this.camera, this.renderer.domElement);
+    this.handles.setSize(0.75);
+    this.handles.setColors(0xd0453e, 0x3f9a4a, 0x3b6fd4, 0xf0a51f);
+    // Its squares and its middle would lie where the part itself is dragged.
+    const { gizmo, picker } = this.handles._gizmo;
+    for (const set of [gizmo, picker]) {
+      for (const mode of ["translate", "rotate"]) {
+        for (const each of [...set[mode].children]) if (each.name.length > 1) each.removeFromParent();
+      }
+    }
+    this.scene.add(this.handles.getHelper());
+    this.handles.addEventListener("change", () => this.draw());
+    this.handles.addEventListener("dragging-changed", ({ value }) => {
+      this.controls.enabled = !value;
+      if (value) this.onHandles?.("begin");
+      else this.handlesTo(this.handled);
+    });
+    this.handles.addEventListener("objectChange", () => {
+      if (this.handles.mode === "translate") this.onHandles?.({ move: this.held.position.clone().sub(this.heldAt).toArray() });
+      else {
+        const { x, y, z, w } = this.held.quaternion;
+        const length = Math.hypot(x, y, z);
+        if (length > 0) this.onHandles?.({ axis: [x / length, y / length, z / length], degrees: (2 * Math.atan2(length, w) * 180) / Math.PI });
+      }
+    });
+  }
+  // Puts the handles to the middle of a part; without one, or without a mode, away.
+  handlesTo(part, mode = this.handlesMode) {
+    this.handled = part;
+    this.handlesMode = mode;
+    if (this.handles.dragging) return;
+    if (!part?.sphere || !mode) return this.handles.detach();
+    this.heldAt = part.placedSphere().center;
+    this.held.position.copy(this.heldAt);
+    this.held.quaternion.identity();
+    this.handles.setMode(mode);
+    this.handles.attach(this.held);
+  }
+  // Would a pointer there take hold of a handle? Not in the middle, where the part itself is dragged.
+  overHandle(x, y) {
+    if (!this.handles.object) return false;
+    const { left, top, width, height } = this.stage.getBoundingClientRect();
+    const middle = this.seen(this.held.position.toArray());
+    if (middle && Math.hypot(middle[0] + left - x, middle[1] + top - y) < 16) return false;
+    this.scene.updateMatrixWorld();
+    this.handles.pointerHover({ x: ((x - left) / width) * 2 - 1, y: 1 - ((y - top) / height) * 2, button: -1 });
+    return this.handles.axis !== null;
   }
   part(index) {
     while (this.parts.length <= index) {
@@ -179,7 +243,22 @@ export class View {
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(sphere.center);
     this.controls.update();
+    this.light(sphere, box);
     this.draw();
+  }
+  // From above, in front and to the left of a scene, with a ground below it.
+  light({ center, radius }, box) {
+    this.sun.position.copy(center).add(new Vector3(-1.2, 2.2, 1.6).multiplyScalar(radius));
+    this.sun.target.position.copy(center);
+    const { camera } = this.sun.shadow;
+    camera.left = camera.bottom = -1.6 * radius;
+    camera.right = camera.top = 1.6 * radius;
+    camera.near = 0.1 * radius;
+    camera.far = 6 * radius;
+    camera.updateProjectionMatrix();
+    this.sun.shadow.normalBias = radius / 300;
+    this.ground.position.set(center.x, box.min.y - 0.02 * radius, center.z);
+    this.ground.scale.setScalar(4 * radius);
   }
   ray(x, y) {
     const { left, top, width, height } = this.stage.getBoundingClientRect();

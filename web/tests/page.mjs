@@ -32,7 +32,8 @@ after(async () => {
 });
 
 // Opens the page; close() tells what it had to complain of, and whether it asked for anything but itself.
-async function open({ file = page_file, width = 1280, height = 800, ...more } = {}) {
+// `found`: as somebody finds it who opens it; else without its story and with everything unfolded.
+async function open({ file = page_file, width = 1280, height = 800, found = false, ...more } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, ...more });
   const page = await context.newPage();
   const faults = [];
@@ -42,6 +43,12 @@ async function open({ file = page_file, width = 1280, height = 800, ...more } = 
   await page.goto(pathToFileURL(file).href);
   await page.waitForFunction(() => document.body.dataset.ready, null, { timeout: 60_000 });
   await idle(page);
+  if (!found) {
+    await page.evaluate(() => {
+      document.getElementById("story-skip").click();
+      for (const each of document.querySelectorAll("#digits, #more")) each.open = true;
+    });
+  }
   return {
     page,
     picture: (name) => page.screenshot({ path: join(pictures, `${name}.png`) }),
@@ -82,9 +89,11 @@ async function holdAgainstCommand(page, folder = models) {
   const contact = collide.verdict === "intersecting" || upper === 0;
   assert.equal(await page.textContent("#exact"), contact ? "contact is proved" : `exactly ${lower} to ${upper}`);
   if (!contact) {
-    const said = execFileSync("bash", ["-c", `"$SNUG" ${lines[1].slice(5)} --quiet`], { cwd: folder, encoding: "utf8", env: { ...process.env, SNUG: command } });
-    const [, at_least, at_most] = said.match(/at least (\S+) and at most (\S+) apart/);
-    assert.equal(await page.textContent("#interval"), `${at_least} to ${at_most}`);
+    // Six digits, outwards.
+    const [least, most] = (await page.textContent("#interval")).split(" to ");
+    assert.ok(Number(least) <= lower && lower - Number(least) <= 1.01e-5 * Math.abs(lower), `${least} ${lower}`);
+    assert.ok(Number(most) >= upper && Number(most) - upper <= 1.01e-5 * Math.abs(upper), `${most} ${upper}`);
+    for (const text of [least, most]) assert.ok(text.replace(/e.*/, "").replace(/^0\.0*|\./g, "").length <= 6, text);
   }
 }
 
@@ -99,6 +108,19 @@ test("gives a proof that snug-check accepts", { skip }, async () => {
   await close();
 });
 
+test("six digits are rounded outwards", async () => {
+  const { six } = await import("../page/digits.js");
+  assert.deepEqual([0.205171585, 0.2, 0.5, 12, 0, 1e-9, 123456789].map((x) => [six(x, false), six(x, true)]), [
+    ["0.205171", "0.205172"], ["0.199999", "0.200001"], ["0.5", "0.5"], ["12", "12"], ["0", "0"], ["9.9999e-10", "1.00001e-9"], ["123456000", "123457000"],
+  ]);
+  let seed = 1;
+  for (let i = 0; i < 20000; ++i) {
+    seed = (seed * 48271) % 2147483647;
+    const x = (seed / 2147483647) * 10 ** (Math.floor(i / 1000) - 10);
+    assert.ok(Number(six(x, false)) <= x && Number(six(x, true)) >= x, `${x}`);
+  }
+});
+
 const middle = (page, index) => page.evaluate((i) => {
   const { left, top } = document.getElementById("stage").getBoundingClientRect();
   const [x, y] = window.snugPage.seen(window.snugPage.middle(i));
@@ -106,13 +128,111 @@ const middle = (page, index) => page.evaluate((i) => {
 }, index);
 
 test("opens with a first answer, and asks for nothing", { skip }, async () => {
-  const { page, picture, close } = await open();
+  const { page, picture, close } = await open({ found: true });
   console.log(`first answer and all shown after ${await page.evaluate(() => document.body.dataset.ready)} ms`);
   assert.ok((await page.evaluate(() => Number(document.body.dataset.ready))) < 5000);
   assert.equal(await verdict(page), "Separated");
   await holdAgainstCommand(page);
   await picture("opened");
   await close();
+});
+
+test("a story of three steps, of few controls, which a drag carries on", { skip }, async () => {
+  const { page, close } = await open({ found: true });
+  const title = () => page.textContent("#story-title");
+  assert.equal(await title(), "Cages lie");
+  const controls = await page.evaluate(() => [...document.querySelectorAll("button, input, select, summary, textarea")]
+    .filter((e) => e.checkVisibility() && !e.closest("#story") && !(e.closest("details") && !e.closest("details").open && e.tagName !== "SUMMARY")).map((e) => e.id || e.textContent));
+  assert.ok(controls.length <= 8, controls.join());
+  // The tip is inside A's cage, and the surfaces are apart.
+  assert.equal(await verdict(page), "Separated");
+  await page.click("#story-next");
+  assert.equal(await title(), "Now drag the pin");
+  const [x, y] = await middle(page, 1);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 60; ++i) await page.mouse.move(x + 2 * i, y - 2 * i);
+  await page.mouse.up();
+  await idle(page);
+  assert.equal(await verdict(page), "Intersecting");
+  assert.equal(await title(), "Take the proof along");
+  await page.click("#story-next");
+  assert.equal(await page.isVisible("#story"), false);
+  await close();
+});
+
+test("arrows move a part along an axis, rings turn it about one", { skip }, async () => {
+  const { page, picture, close } = await open();
+  const pose = () => page.evaluate(() => window.snugPage.state().poses[1]);
+  const before = await pose();
+  const pull = async (dx, dy, ex, ey) => {
+    const [x, y] = await middle(page, 1);
+    await page.mouse.move(x + dx, y + dy);
+    await page.mouse.down();
+    for (let i = 1; i <= 10; ++i) await page.mouse.move(x + dx + (ex * i) / 10, y + dy + (ey * i) / 10);
+    await page.mouse.up();
+    await idle(page);
+  };
+  await pull(70, 5, 80, 0);
+  const along = await pose();
+  assert.ok(along[3] > before[3] + 0.1, `${along}`);
+  for (const k of [0, 1, 2, 4, 5, 6, 7, 8, 9, 10, 11]) assert.ok(Math.abs(along[k] - before[k]) < 1e-12, `${k}: ${along}`);
+  await holdAgainstCommand(page);
+  await page.selectOption("#handles", "rotate");
+  const centre = await page.evaluate(() => window.snugPage.middle(1));
+  await picture("rings");
+  // Rings about the axes; one of them is under one of these places.
+  for (const [dx, dy] of [[60, 0], [45, 45], [0, 60], [-45, 45], [50, 20], [20, 50]]) {
+    await pull(dx, dy, -dy / 2, dx / 2);
+    if ((await pose())[0] !== along[0]) break;
+  }
+  const turned = await pose();
+  assert.notEqual(turned[0], along[0]);
+  const length = Math.hypot(turned[0], turned[1], turned[2]);
+  assert.ok(Math.abs(length - 1) < 1e-12, "stays rigid");
+  const still = await page.evaluate(() => window.snugPage.middle(1));
+  assert.ok(centre.every((x, k) => Math.abs(x - still[k]) < 1e-6), `${centre} ${still}`);
+  await holdAgainstCommand(page);
+  await page.selectOption("#handles", "");
+  await close();
+});
+
+test("axe finds nothing serious, and nothing is blank below", { skip }, async () => {
+  const axe = readFileSync(join(root, "web/node_modules/axe-core/axe.min.js"), "utf8");
+  for (const how of [{}, { colorScheme: "dark" }, { width: 390, height: 844 }, { width: 390, height: 844, colorScheme: "dark" }]) {
+    for (const found of [true, false]) {
+      const { page, picture, close } = await open({ ...how, found });
+      await page.evaluate(axe);
+      const { violations } = await page.evaluate(() => window.axe.run());
+      const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
+      assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" ")}`), []);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollHeight <= innerHeight && document.documentElement.scrollWidth <= innerWidth));
+      if (found) await picture(`found-${how.width ?? 1280}-${how.colorScheme ?? "light"}`);
+      await close();
+    }
+  }
+});
+
+test("a page without the engine shows the parts and the answer", { skip }, async () => {
+  const made = join(scratch, "still.html"), bin = join(scratch, "bin"), answer = join(scratch, "still.json");
+  mkdirSync(bin);
+  copyFileSync(command, join(bin, "snug"));
+  const parts = ["bracket.obj", "pin.obj"].map((name) => join(models, name));
+  execFileSync(command, ["distance", ...parts, "--rotate-b", "z 135", "--move-b", "0.05 0.05 0.5", "--quiet", "-o", answer]);
+  execFileSync(join(bin, "snug"), ["view", ...parts, "--answer", answer, "--quiet", "-o", made]);
+  for (const how of [{}, { width: 390, height: 844, colorScheme: "dark" }]) {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...how });
+    const page = await context.newPage();
+    const faults = [];
+    page.on("pageerror", (error) => faults.push(error.stack));
+    await page.goto(pathToFileURL(made).href);
+    await page.waitForFunction(() => document.body.dataset.ready);
+    assert.match(await page.textContent("#sentence"), /^Proved: the limit surfaces are between 0\.2\d+ and 0\.2\d+ apart\.$/);
+    assert.equal(await page.locator("#parts li").count(), 2);
+    await page.screenshot({ path: join(pictures, `still-${how.width ?? 1280}.png`) });
+    assert.deepEqual(faults, []);
+    await context.close();
+  }
 });
 
 test("a drag changes the verdict, with the command's numbers, within 5 ms a question", { skip }, async () => {

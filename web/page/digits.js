@@ -1,0 +1,10 @@
+// Six digits of an end of an interval, rounded away from the other end. Where six digits name the same double, that is not yet
+// the same number: 0.2 is less than the double nearest to it.
+export function six(x, up) {
+  const near = Number(x.toPrecision(6));
+  const exact = near === x && Number.isInteger(x * 2 ** 16);
+  if (exact || (up ? near > x : near < x)) return String(near);
+  const last = 10 ** (Math.floor(Math.log10(Math.abs(x))) - 5);
+  return String(Number((near + (up ? last : -last)).toPrecision(6)));
+}
+export const interval = ([lower, upper]) => [six(lower, false), Number.isFinite(upper) ? six(upper, true) : null];
