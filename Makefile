@@ -127,7 +127,7 @@ tidy: install-packages  ## clang-tidy over the library
 	@cmake --preset dev > /dev/null
 	@run-clang-tidy -quiet -j $(JOBS) -p build/dev 'src/snug/.*\.cpp$$'
 
-docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/manufacturing.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
+docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/manufacturing.md, docs/rays.md, docs/nodal_functions.md, docs/figures.md and docs/independence.md; links and citations
 	@$(call build,release,snug_command snug_research)
 	@scripts/install_packages docs
 	@mkdir -p build/docs
@@ -145,6 +145,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/draw_nodal build/release/bin/snug docs/pictures
 	@scripts/draw_rays build/release/bin/snug docs/pictures
 	@scripts/draw_independence build/release/bin/snug-research docs/pictures
+	@scripts/draw_dissertation build/release/bin/snug docs/pictures
 	@scripts/draw_examples build/release docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py

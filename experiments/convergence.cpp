@@ -67,6 +67,17 @@ PieceThickness by_table(const BoundTable& table, const Patch& patch, const Vecto
   return {{offset.radius, thickness(triangle.interval), upper - lower}, offset.rounding};
 }
 
+// d_i: a control point's distance from the linear function through the first three, or through the corners' limits.
+Vector3 difference_from_linear(const BoundTable& table, const Patch& patch, std::size_t i) {
+  std::array<Vector3, 3> corner;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corner[k] = table.first_bounded() > 0 ? patch.points[k]
+                                          : patch.kind->corner_limits().apply<Vector3>(k, patch.points);
+  }
+  const LayoutPoint& u = table.layout[i];
+  return patch.points[i] - (corner[0] + u[0] * (corner[1] - corner[0]) + u[1] * (corner[2] - corner[0]));
+}
+
 // Of the tangent plane inside the mesh.
 double subdominant_of(Scheme scheme, std::size_t n) {
   return rules_of(scheme).shrink_factor({0, static_cast<std::uint16_t>(n - 1)});
@@ -188,6 +199,29 @@ std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, Patch
   }
 }
 
+LemmaTwelve lemma_twelve(const LimitSurface& surface, PatchId p, LayoutTables& tables, BoundSource source,
+                         unsigned levels) {
+  Patch patch = surface.patch(p);
+  const PowerOfTwo back = surface.scale().inverse();
+  LemmaTwelve result;
+  for (unsigned level = 0;; ++level) {
+    const BoundTable& table = tables.get(*patch.kind, source);
+    double gap = 0;
+    for (std::size_t i = 0; i < table.lower.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) gap = std::max(gap, table.upper[i][k] - table.lower[i][k]);
+    }
+    Vector3 sum{};
+    for (std::size_t i = table.first_bounded(); i < patch.points.size(); ++i) {
+      const Vector3 d = difference_from_linear(table, patch, i);
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += std::fabs(d[a]);
+    }
+    result.gap = std::max(result.gap, gap);
+    result.bound.push_back(back.apply(gap * max_abs(sum)));
+    if (level == levels) return result;
+    patch = split(patch, 0);
+  }
+}
+
 double fitted_factor(std::span<const double> values) {
   require_value(values.size() >= 3, "fitted factor: give at least three values");
   const std::size_t first = values.size() / 2;
@@ -255,18 +289,21 @@ std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor
     monitor.report(static_cast<double>(i) / static_cast<double>(places.size()));
     // A net, a source, a measure.
     std::vector<std::array<std::array<Thicknesses, 3>, 3>> all(options.nets);
+    std::vector<std::array<LemmaTwelve, 3>> lemmas(options.nets);
     parallel_for(options.nets, options.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t net = begin; net < end; ++net) {
         monitor.checkpoint();
         const LimitSurface surface = net_surface(options.scheme, places[i], options.seed + net, library);
         for (std::size_t s = 0; s < sources.size(); ++s) {
           all[net][s] = corner_thicknesses(surface, first_patch(surface), tables, sources[s], options.levels);
+          if (sources[s] == BoundSource::rows) continue;
+          lemmas[net][s] = lemma_twelve(surface, first_patch(surface), tables, sources[s], options.levels);
         }
       }
     });
     for (std::size_t s = 0; s < sources.size(); ++s) {
       for (std::size_t m = 0; m < all_thickness_measures.size(); ++m) {
-        RateRow row{places[i], sources[s], all_thickness_measures[m], {}, 0, 0};
+        RateRow row{places[i], sources[s], all_thickness_measures[m], {}, 0, 0, {}};
         std::size_t levels = options.levels + 1;
         for (const auto& net : all) levels = std::min(levels, net[s][m].size());
         if (levels == 0) continue;  // no normal
@@ -274,6 +311,11 @@ std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor
           std::vector<double> values;
           for (const auto& net : all) values.push_back(net[s][m][level]);
           row.thickness.push_back(quantile(std::move(values), 0.5));
+          if (row.source == BoundSource::rows || row.measure != ThicknessMeasure::interval) continue;
+          std::vector<double> bounds;
+          for (const auto& net : lemmas) bounds.push_back(net[s].bound[level]);
+          row.lemma.bound.push_back(quantile(std::move(bounds), 0.5));
+          row.lemma.gap = lemmas[0][s].gap;
         }
         row.factor = fitted_factor(row.thickness);
         row.expected = expected_factor(options.scheme, row.place, row.source, row.measure);

@@ -61,6 +61,17 @@ using Thicknesses = std::vector<double>;
                                                             LayoutTables& tables, BoundSource source,
                                                             unsigned levels);
 
+/// What lemma 12 bounds ThicknessMeasure::interval by: the largest gap between the planes of a table, at a corner of its
+/// triangle, times the sum of |d_i|, in the coordinate where it is largest; at the levels of corner_thicknesses().
+/// Source:    [Wu05, sec. 4.7].
+struct LemmaTwelve {
+  double gap = 0;     ///< its constant C
+  Thicknesses bound;  ///< C sum |d_i|
+};
+/// Requires:  as corner_thicknesses(); a table as source.
+[[nodiscard]] LemmaTwelve lemma_twelve(const LimitSurface& surface, PatchId p, LayoutTables& tables,
+                                       BoundSource source, unsigned levels);
+
 /// The factor a level of the geometric sequence nearest to the second half of `values`: least squares of
 /// logarithms. Levels below values.size() / 2 are left out.
 /// Requires:  positive values.
@@ -100,6 +111,7 @@ struct RateRow {
   ThicknessMeasure measure;
   Thicknesses thickness;    ///< medians over the nets; levels that all nets have
   double factor, expected;  ///< fitted to the medians; of theory
+  LemmaTwelve lemma{};      ///< medians; of tables, for ThicknessMeasure::interval
 };
 
 /// Rows of all places, sources and measures, in this order; none of the normal measure where there is no

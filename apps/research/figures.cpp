@@ -177,6 +177,8 @@ void write_rates(Report& report, const RateOptions& wanted, const std::vector<Ra
              semi_sharp = wanted.centre == NetCentre::semi_sharp;
   report.text(inside ? "thickness at an extraordinary corner, the factor a level: measured (theory)"
                      : "thickness at a corner, the factor a level: measured (theory); eigenvalues after 1");
+  report.text(
+      "C sum |d_i| of lemma 12 is so many times the interval thickness, at level 0 and at the last one");
   std::string line = fmt::format("{:>9}  {:<22}",
                                  semi_sharp ? "sharpness"
                                  : inside   ? "valence"
@@ -195,6 +197,13 @@ void write_rates(Report& report, const RateOptions& wanted, const std::vector<Ra
       line += fmt::format("  {:.4f} ({:.4f})  ", rows[i].factor, rows[i].expected);
     }
     if (i - begin < all_thickness_measures.size()) line += fmt::format("  {:<17}", "no normal");
+    for (std::size_t k = begin; k < i; ++k) {
+      const LemmaTwelve& lemma = rows[k].lemma;
+      if (lemma.bound.empty()) continue;
+      line += fmt::format("  C {:.3f}, {:.1f} to {:.1f} times", lemma.gap,
+                          lemma.bound.front() / rows[k].thickness.front(),
+                          lemma.bound[rows[k].thickness.size() - 1] / rows[k].thickness.back());
+    }
     if (!inside) {
       line += fmt::format("  {:.4f} {:.4f} {:.4f}", eigenvalues.subdominant, eigenvalues.second,
                           eigenvalues.next);
@@ -225,7 +234,13 @@ ExitStatus rates(const RatesOptions& options) {
       write_source(json, row.source);
       json.field("measure", name_of(row.measure)).key("thickness").begin_array();
       for (const double t : row.thickness) json.value(t);
-      json.end_array().field("factor", row.factor).field("expected", row.expected);
+      json.end_array();
+      if (!row.lemma.bound.empty()) {
+        json.key("lemma_12").begin_object().field("gap", row.lemma.gap).key("bound").begin_array();
+        for (const double bound : row.lemma.bound) json.value(bound);
+        json.end_array().end_object();
+      }
+      json.field("factor", row.factor).field("expected", row.expected);
       json.field("subdominant", eigenvalues.subdominant).field("second", eigenvalues.second);
       json.field("next", eigenvalues.next).end_object();
     }

@@ -51,6 +51,21 @@ TEST(convergence, the_characteristic_layout_beats_the_ngon_at_every_extraordinar
   EXPECT_GT(factor(8, BoundSource::ngon, ThicknessMeasure::radius), 0.5);
 }
 
+// Lemma 12 at every level, and it loses more than rounding; of what has no table it says nothing.
+TEST(convergence, thickness_is_at_most_the_largest_gap_times_the_differences) {
+  std::size_t levels = 0;
+  for (const RateRow& row : measured()) {
+    const bool said = row.source != BoundSource::rows && row.measure == ThicknessMeasure::interval;
+    ASSERT_EQ(row.lemma.bound.size(), said ? row.thickness.size() : 0) << row.place.faces;
+    for (std::size_t level = 0; level < row.lemma.bound.size(); ++level, ++levels) {
+      EXPECT_GT(row.lemma.bound[level], 1.3 * row.thickness[level]) << row.place.faces << " level " << level;
+      EXPECT_LT(row.lemma.bound[level], 40 * row.thickness[level]) << row.place.faces << " level " << level;
+    }
+    if (said) EXPECT_TRUE(row.lemma.gap > 0.05 && row.lemma.gap < 0.2) << row.lemma.gap;
+  }
+  EXPECT_GT(levels, 150u);
+}
+
 TEST(convergence, factors_are_the_eigenvalues_of_theory) {
   for (const RateRow& row : measured()) {
     EXPECT_NEAR(row.factor / row.expected, 1, 0.1) << row.place.faces << name_of(row.measure);
