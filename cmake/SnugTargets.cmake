@@ -101,6 +101,7 @@ function(snug_library)
   target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy nlohmann_json::nlohmann_json
                                              Threads::Threads ${snug_zlib} ${snug_assimp})
+  set_source_files_properties(../support/system_files_windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # <windows.h> names much
   set_source_files_properties(io/zip.cpp PROPERTIES COMPILE_DEFINITIONS SNUG_HAS_ZLIB=$<BOOL:${ZLIB_FOUND}>
                               SKIP_UNITY_BUILD_INCLUSION ON)
   set_source_files_properties(io/assimp.cpp PROPERTIES COMPILE_DEFINITIONS SNUG_HAS_ASSIMP=$<BOOL:${SNUG_ASSIMP}>

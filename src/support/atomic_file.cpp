@@ -1,18 +1,13 @@
 #include <support/atomic_file.h>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <system_error>
 
 #include <support/error.h>
+#include <support/system_files.h>
 
 namespace snug {
 namespace {
@@ -22,20 +17,6 @@ constexpr std::size_t buffer_size = 64 * 1024;
 [[noreturn]] void refuse(const std::string& name, int reason) {
   throw InputError(InputProblem::unreadable,
                    name + ": cannot be written: " + std::generic_category().message(reason));
-}
-
-std::string folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return folder.empty() ? "." : folder;
-}
-
-/// A rename survives a power failure only once its folder is on the disk. Some file systems cannot do this
-/// for folders; the file is complete all the same.
-void sync_folder(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  static_cast<void>(::fsync(descriptor));
-  ::close(descriptor);
 }
 
 // Names for remove_unfinished_files(): they stay where they are, since a signal may come at any time. A place
@@ -67,17 +48,16 @@ void release_name(int place) noexcept {
 
 void remove_unfinished_files() noexcept {
   for (const Unfinished& file : unfinished) {
-    if (file.there.load()) ::unlink(file.name.data());
+    if (file.there.load()) system_files::remove(file.name.data());
   }
 }
 
 void require_writable(const std::string& path) {
-  struct stat status {};
-  const bool stream = path == "-" || (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
-                                      !S_ISDIR(status.st_mode));
-  if (!stream) {
+  using enum system_files::Sort;
+  const system_files::Sort sort = path == "-" ? other : system_files::status_of(path).sort;
+  if (sort == missing || sort == file || sort == folder) {
     const AtomicFile trial(path);
-  } else if (path != "-" && ::access(path.c_str(), W_OK) != 0) {
+  } else if (path != "-" && !system_files::is_writable(path)) {
     refuse(path, errno);
   }
 }
@@ -87,42 +67,39 @@ AtomicFile::AtomicFile(const std::string& path)
   if (path.empty()) throw InputError(InputProblem::unreadable, "the name of the file to write is empty");
   buffer_.reserve(buffer_size);
   if (path == "-") {
-    descriptor_ = STDOUT_FILENO;
+    descriptor_ = system_files::standard_output;
     return;
   }
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
+  const system_files::Status status = system_files::status_of(path);
+  if (status.sort == system_files::Sort::missing) {
     open_temporary(0666);
     return;
   }
-  if (S_ISDIR(status.st_mode)) fail(EISDIR);
-  if (!S_ISREG(status.st_mode)) {
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (status.sort == system_files::Sort::folder) fail(EISDIR);
+  if (status.sort != system_files::Sort::file) {
+    descriptor_ = system_files::open_to_write(path);
     if (descriptor_ < 0) fail(errno);
     return;
   }
   // A rename would replace a write-protected file without asking.
-  if (::access(path.c_str(), W_OK) != 0) fail(errno);
-  std::error_code error;
-  const std::filesystem::path resolved = std::filesystem::canonical(path, error);
-  if (error) fail(error.value());
-  target_ = resolved.string();
-  const unsigned permissions = status.st_mode & 0777;
-  open_temporary(permissions);
-  // Restores what the umask removed; file systems without permissions refuse.
-  static_cast<void>(::fchmod(descriptor_, permissions));
+  if (!system_files::is_writable(path)) fail(errno);
+  target_ = system_files::canonical(path);
+  if (target_.empty()) fail(errno);
+  open_temporary(status.permissions);
+  system_files::set_permissions(descriptor_, status.permissions);
 }
 
 AtomicFile::~AtomicFile() { abandon(); }
 
 void AtomicFile::open_temporary(unsigned mode) {
   static std::atomic<unsigned> serial{0};
-  const std::string stem = folder_of(target_) + "/.snug-" + std::to_string(::getpid()) + '-';
+  const std::string stem =
+      system_files::folder_of(target_) + "/.snug-" + std::to_string(system_files::process_id()) + '-';
   do {
     forget_temporary();
     temporary_ = stem + std::to_string(serial++) + ".part";
     held_ = hold_name(temporary_);  // before the file is there: no signal comes in between
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    descriptor_ = system_files::create(temporary_, mode);
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ >= 0) return;
   const int reason = errno;
@@ -157,7 +134,8 @@ void AtomicFile::write(std::string_view bytes, const WorkMonitor& monitor) {
 void AtomicFile::flush() {
   std::size_t written = 0;
   while (written < buffer_.size()) {
-    const ssize_t count = ::write(descriptor_, buffer_.data() + written, buffer_.size() - written);
+    const std::ptrdiff_t count =
+        system_files::write(descriptor_, buffer_.data() + written, buffer_.size() - written);
     if (count >= 0) {
       written += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
@@ -175,7 +153,7 @@ void AtomicFile::send() {
 void AtomicFile::complete() {
   require_value(!finished_, "a file to write is used after commit() or a failure; open another one");
   flush();
-  if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(errno);
+  if (!temporary_.empty() && system_files::sync(descriptor_) != 0) fail(errno);
 }
 
 void AtomicFile::commit() {
@@ -183,18 +161,18 @@ void AtomicFile::commit() {
   if (!temporary_.empty()) {
     const int closing = descriptor_;
     descriptor_ = -1;
-    if (::close(closing) != 0) fail(errno);
-    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+    if (system_files::close(closing) != 0) fail(errno);
+    if (system_files::rename(temporary_, target_) != 0) fail(errno);
     forget_temporary();
-    sync_folder(folder_of(target_));
+    system_files::sync_folder(system_files::folder_of(target_));
   }
   finished_ = true;
 }
 
 void AtomicFile::abandon() noexcept {
-  if (descriptor_ >= 0 && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
+  if (descriptor_ >= 0 && descriptor_ != system_files::standard_output) system_files::close(descriptor_);
   descriptor_ = -1;
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) system_files::remove(temporary_.c_str());
   forget_temporary();
 }
 

@@ -1,9 +1,5 @@
 #include <support/read_file.h>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -11,6 +7,7 @@
 #include <system_error>
 
 #include <support/error.h>
+#include <support/system_files.h>
 #include <support/text_cursor.h>
 
 namespace snug {
@@ -23,11 +20,11 @@ namespace {
 class InputDescriptor {
  public:
   explicit InputDescriptor(const std::string& path)
-      : number_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+      : number_(path == "-" ? system_files::standard_input : system_files::open_to_read(path)) {
     if (number_ < 0) fail_with_reason(path, errno);
   }
   ~InputDescriptor() {
-    if (number_ != STDIN_FILENO) ::close(number_);
+    if (number_ != system_files::standard_input) system_files::close(number_);
   }
   InputDescriptor(const InputDescriptor&) = delete;
   InputDescriptor& operator=(const InputDescriptor&) = delete;
@@ -37,12 +34,6 @@ class InputDescriptor {
   int number_;
 };
 
-std::size_t memory_of_machine() {
-  const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || size <= 0) return SIZE_MAX;
-  return static_cast<std::size_t>(pages) * static_cast<std::size_t>(size);
-}
-
 // How much is to come, and how much may.
 struct Size {
   std::size_t expected = 0;
@@ -50,15 +41,15 @@ struct Size {
 };
 
 Size size_of(int descriptor, const std::string& name) {
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) return {};
-  if (S_ISDIR(status.st_mode)) fail_in_file(name, "is a directory: name a file in it");
+  const system_files::Status status = system_files::status_of(descriptor);
+  if (status.sort == system_files::Sort::folder) fail_in_file(name, "is a directory: name a file in it");
   // A terminal, or one that never ends.
-  if (S_ISCHR(status.st_mode)) return {0, 20};
-  if (!S_ISREG(status.st_mode) || status.st_size <= 0) return {};
-  const auto size = static_cast<std::size_t>(status.st_size);
-  if (size > memory_of_machine()) fail_in_file(name, "is larger than the memory of this machine");
-  return {size};
+  if (status.sort == system_files::Sort::character_device) return {0, 20};
+  if (status.sort != system_files::Sort::file || status.size == 0) return {};
+  if (status.size > system_files::memory_of_machine()) {
+    fail_in_file(name, "is larger than the memory of this machine");
+  }
+  return {status.size};
 }
 
 }  // namespace
@@ -77,7 +68,8 @@ std::string read_file(const std::string& path, const WorkMonitor& monitor) {
   for (;;) {
     monitor.checkpoint();
     if (bytes.size() == size) bytes.resize(2 * size);
-    const ssize_t got = ::read(descriptor.number(), bytes.data() + size, bytes.size() - size);
+    const std::ptrdiff_t got =
+        system_files::read(descriptor.number(), bytes.data() + size, bytes.size() - size);
     if (got == 0) break;
     if (got < 0 && errno != EINTR) fail_with_reason(name, errno);
     if (got > 0) size += static_cast<std::size_t>(got);

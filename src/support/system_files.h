@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+/// Files as POSIX and Windows have them: names are UTF-8 of any length, nothing is translated in text. Functions return what
+/// POSIX's do, -1 with errno on failure.
+namespace snug::system_files {
+
+enum class Sort { missing, file, folder, character_device, other };
+struct Status {
+  Sort sort = Sort::missing;
+  std::size_t size = 0;  ///< of a file
+  unsigned permissions = 0;
+};
+/// Follows symbolic links.
+[[nodiscard]] Status status_of(const std::string& path);
+[[nodiscard]] Status status_of(int descriptor);
+
+[[nodiscard]] int open_to_read(const std::string& path);
+[[nodiscard]] int open_to_write(const std::string& path);
+/// Fails with EEXIST if there is one.
+[[nodiscard]] int create(const std::string& path, unsigned permissions);
+/// Bytes read, at most `count`; 0 at the end.
+[[nodiscard]] std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count);
+[[nodiscard]] std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count);
+int close(int descriptor) noexcept;
+/// Async-signal-safe.
+int remove(const char* path) noexcept;
+
+/// Is a file there that may be written?
+[[nodiscard]] bool is_writable(const std::string& path);
+/// Restores what the umask removed; file systems without permissions refuse.
+void set_permissions(int descriptor, unsigned permissions) noexcept;
+/// On the disk.
+[[nodiscard]] int sync(int descriptor);
+/// A rename survives a power failure only once its folder is on the disk. Some file systems cannot do this
+/// for folders; the file is complete all the same.
+void sync_folder(const std::string& folder);
+/// Replaces what is at `to`, in one step.
+[[nodiscard]] int rename(const std::string& from, const std::string& to);
+/// Symbolic links resolved; empty with errno on failure.
+[[nodiscard]] std::string canonical(const std::string& path);
+/// With `/`, or "." for a bare name.
+[[nodiscard]] std::string folder_of(const std::string& path);
+
+[[nodiscard]] unsigned long process_id();
+/// In bytes; SIZE_MAX if the system does not say.
+[[nodiscard]] std::size_t memory_of_machine();
+
+inline constexpr int standard_input = 0, standard_output = 1;
+
+}  // namespace snug::system_files

@@ -1,0 +1,148 @@
+#ifdef _WIN32
+
+#include <support/system_files.h>
+
+#include <fcntl.h>
+#include <io.h>
+#include <sys/stat.h>
+#include <windows.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cwchar>
+
+namespace snug::system_files {
+namespace {
+
+std::wstring wide(const std::string& utf8) {
+  const int count = ::MultiByteToWideChar(CP_UTF8, 0, utf8.data(), static_cast<int>(utf8.size()), nullptr, 0);
+  std::wstring result(static_cast<std::size_t>(std::max(count, 0)), L'\0');
+  ::MultiByteToWideChar(CP_UTF8, 0, utf8.data(), static_cast<int>(utf8.size()), result.data(), count);
+  return result;
+}
+
+std::string narrow(const std::wstring& text) {
+  const int count = ::WideCharToMultiByte(CP_UTF8, 0, text.data(), static_cast<int>(text.size()), nullptr, 0,
+                                          nullptr, nullptr);
+  std::string result(static_cast<std::size_t>(std::max(count, 0)), '\0');
+  ::WideCharToMultiByte(CP_UTF8, 0, text.data(), static_cast<int>(text.size()), result.data(), count, nullptr,
+                        nullptr);
+  return result;
+}
+
+// Names of more than 259 characters are known in full and with a prefix alone.
+std::wstring name_of(const std::string& path) {
+  std::wstring name = wide(path);
+  if (name.size() < 240 || name.starts_with(LR"(\\?\)")) return name;
+  const DWORD count = ::GetFullPathNameW(name.c_str(), 0, nullptr, nullptr);
+  std::wstring full(count, L'\0');
+  full.resize(::GetFullPathNameW(name.c_str(), count, full.data(), nullptr));
+  return full.starts_with(LR"(\\)") ? LR"(\\?\UNC)" + full.substr(1) : LR"(\\?\)" + full;
+}
+
+int failed_as_windows_says() {
+  const DWORD reason = ::GetLastError();
+  errno = reason == ERROR_FILE_NOT_FOUND || reason == ERROR_PATH_NOT_FOUND     ? ENOENT
+          : reason == ERROR_ACCESS_DENIED || reason == ERROR_SHARING_VIOLATION ? EACCES
+          : reason == ERROR_ALREADY_EXISTS || reason == ERROR_FILE_EXISTS      ? EEXIST
+          : reason == ERROR_DISK_FULL                                          ? ENOSPC
+                                                                               : EIO;
+  return -1;
+}
+
+Status status_from(const struct _stat64& found) {
+  Status status;
+  status.permissions = found.st_mode & 0777u;
+  const auto sort = found.st_mode & _S_IFMT;
+  if (sort == _S_IFREG) {
+    status.sort = Sort::file;
+    status.size = found.st_size > 0 ? static_cast<std::size_t>(found.st_size) : 0;
+  } else {
+    status.sort = sort == _S_IFDIR ? Sort::folder : sort == _S_IFCHR ? Sort::character_device : Sort::other;
+  }
+  return status;
+}
+
+// Standard streams translate ends of lines unless told not to.
+void as_bytes(int descriptor) {
+  if (descriptor <= standard_output) static_cast<void>(::_setmode(descriptor, _O_BINARY));
+}
+
+constexpr std::size_t most_at_once = std::size_t{1} << 30;
+
+}  // namespace
+
+Status status_of(const std::string& path) {
+  struct _stat64 found {};
+  return ::_wstat64(name_of(path).c_str(), &found) == 0 ? status_from(found) : Status{};
+}
+
+Status status_of(int descriptor) {
+  struct _stat64 found {};
+  return ::_fstat64(descriptor, &found) == 0 ? status_from(found) : Status{};
+}
+
+int open_to_read(const std::string& path) {
+  return ::_wopen(name_of(path).c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
+}
+int open_to_write(const std::string& path) {
+  return ::_wopen(name_of(path).c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
+}
+int create(const std::string& path, unsigned permissions) {
+  const int mode = (permissions & 0200u) != 0 ? _S_IREAD | _S_IWRITE : _S_IREAD;
+  return ::_wopen(name_of(path).c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT, mode);
+}
+std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) {
+  as_bytes(descriptor);
+  return ::_read(descriptor, bytes, static_cast<unsigned>(std::min(count, most_at_once)));
+}
+std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) {
+  as_bytes(descriptor);
+  return ::_write(descriptor, bytes, static_cast<unsigned>(std::min(count, most_at_once)));
+}
+int close(int descriptor) noexcept { return ::_close(descriptor); }
+int remove(const char* path) noexcept {
+  return ::DeleteFileW(name_of(path).c_str()) ? 0 : failed_as_windows_says();
+}
+
+bool is_writable(const std::string& path) { return ::_waccess(name_of(path).c_str(), 2) == 0; }
+void set_permissions(int, unsigned) noexcept {}
+int sync(int descriptor) { return ::_commit(descriptor); }
+void sync_folder(const std::string&) {}  // the rename writes through
+
+int rename(const std::string& from, const std::string& to) {
+  constexpr DWORD how = MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH;
+  return ::MoveFileExW(name_of(from).c_str(), name_of(to).c_str(), how) ? 0 : failed_as_windows_says();
+}
+
+// What a rename would replace: the file itself, for links are rare here and stay as they are.
+std::string canonical(const std::string& path) {
+  const std::wstring name = wide(path);
+  const DWORD count = ::GetFullPathNameW(name.c_str(), 0, nullptr, nullptr);
+  if (count == 0) {
+    failed_as_windows_says();
+    return {};
+  }
+  std::wstring full(count, L'\0');
+  full.resize(::GetFullPathNameW(name.c_str(), count, full.data(), nullptr));
+  return narrow(full);
+}
+
+std::string folder_of(const std::string& path) {
+  const std::size_t end = path.find_last_of("/\\");
+  if (end == std::string::npos) return path.size() > 1 && path[1] == ':' ? path.substr(0, 2) + "." : ".";
+  return end == 0 || path[end - 1] == ':' ? path.substr(0, end + 1) : path.substr(0, end);
+}
+
+unsigned long process_id() { return ::GetCurrentProcessId(); }
+
+std::size_t memory_of_machine() {
+  MEMORYSTATUSEX status{};
+  status.dwLength = sizeof(status);
+  return ::GlobalMemoryStatusEx(&status) ? static_cast<std::size_t>(status.ullTotalPhys) : SIZE_MAX;
+}
+
+}  // namespace snug::system_files
+
+#endif
