@@ -12,7 +12,10 @@ import subprocess
 import sys
 import sysconfig
 import tarfile
+import tempfile
 import zipfile
+
+from self_contained import self_contained
 
 NAME = "snug-surfaces"  # PyPI has another package named snug
 FILE_NAME = "snug_surfaces"
@@ -29,13 +32,19 @@ def version():
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    """On Linux, where patchelf is, one that needs no library which a system may lack; else one for systems like this."""
     extension = _built()
+    with tempfile.TemporaryDirectory() as folder:
+        binaries, tag = self_contained(extension, folder) if sys.platform == "linux" else ([extension], None)
+        binaries = {f"snug/{file.name}": file.read_bytes() for file in binaries}
     files = {f"snug/{file.name}": file.read_bytes() for file in sorted(PACKAGE.iterdir()) if file.suffix in (".py", ".pyi", ".typed")}
     files["snug/py.typed"] = b""
-    files[f"snug/{extension.name}"] = extension.read_bytes()
+    files.update(binaries)
+    files["snug/still.html"] = (ROOT / "web/page/still.html").read_bytes()
     if PAGE.exists():
         files["snug/view.html"] = PAGE.read_bytes()
-    return _zipped(wheel_directory, files)
+    platform = PLATFORM.replace("linux", tag) if tag else PLATFORM
+    return _zipped(wheel_directory, files, platform)
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
@@ -89,17 +98,17 @@ def _metadata():
     )
 
 
-def _zipped(directory, files):
+def _zipped(directory, files, platform=PLATFORM):
     facts = f"{FILE_NAME}-{version()}.dist-info"
     files = {
         **files,
         f"{facts}/METADATA": _metadata().encode(),
-        f"{facts}/WHEEL": f"Wheel-Version: 1.0\nGenerator: snug\nRoot-Is-Purelib: false\nTag: {TAG}-{TAG}-{PLATFORM}\n".encode(),
-        f"{facts}/LICENSE": (ROOT / "LICENSE").read_bytes(),
+        f"{facts}/WHEEL": f"Wheel-Version: 1.0\nGenerator: snug\nRoot-Is-Purelib: false\nTag: {TAG}-{TAG}-{platform}\n".encode(),
+        **{f"{facts}/licenses/{path.name}": path.read_bytes() for path in (ROOT / "LICENSE", ROOT / "python/NOTICES")},
     }
     record = "".join(f"{name},sha256={_hash(content)},{len(content)}\n" for name, content in files.items())
     files[f"{facts}/RECORD"] = f"{record}{facts}/RECORD,,\n".encode()
-    wheel = f"{FILE_NAME}-{version()}-{TAG}-{TAG}-{PLATFORM}.whl"
+    wheel = f"{FILE_NAME}-{version()}-{TAG}-{TAG}-{platform}.whl"
     with zipfile.ZipFile(pathlib.Path(directory) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             # A date of its own: the same files make the same wheel.

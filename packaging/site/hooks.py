@@ -21,6 +21,7 @@ def expanded(nav, docs):
 
 def on_config(config):
     config["nav"] = expanded(config["nav"], pathlib.Path(config["docs_dir"]))
+    config["extra"]["live"] = (pathlib.Path(config["docs_dir"]) / "live.html").exists()
     return config
 
 

@@ -143,6 +143,9 @@ class Site:
             elif path.parts[0] == "docs" and path.is_file():
                 (self.output / page).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(ROOT / path, self.output / page)
+        live = ROOT / "build/web/snug.html"  # which make page builds
+        if live.exists():
+            shutil.copyfile(live, self.output / "live.html")
         shutil.copytree(ROOT / "packaging/site/assets", self.output / "assets", dirs_exist_ok=True)
 
 

@@ -1,4 +1,4 @@
-"""The programs in README.md and docs/python.md run, and say what the pages say."""
+"""The programs in README.md, docs/python.md and docs/newcomers.md run, and say what the pages say."""
 
 import re
 
@@ -6,7 +6,7 @@ import pytest
 
 from conftest import MODELS, ROOT
 
-PAGES = ["README.md", "docs/python.md"]
+PAGES = ["README.md", "docs/python.md", "docs/newcomers.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -18,6 +18,7 @@ def test_programs_of_a_page(page, monkeypatch, capsys):
     for program in programs:
         exec(compile(program, page, "exec"), names)
     said = capsys.readouterr().out
-    assert said.startswith("separated 0.205" if page == "README.md" else "separated ")
+    begins = {"README.md": "separated 0.205", "docs/python.md": "separated ", "docs/newcomers.md": "first contact by step"}
+    assert said.startswith(begins[page]), said
     if page == "docs/python.md":
         assert names["hits"].colliding.shape == (1000,) and names["hits"].any()
