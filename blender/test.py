@@ -17,7 +17,7 @@ import numpy as np
 
 bpy.ops.preferences.addon_enable(module="snug_blender")
 import snug  # noqa: E402  (which the add-on has found)
-from snug_blender import cages, live, words  # noqa: E402
+from snug_blender import cages, live, operators, words  # noqa: E402
 
 SMOOTH, SEMI_SHARP = 2e-7, 1e-6  # of the size: single precision, and what it adds up to at semi-sharp creases
 
@@ -219,6 +219,7 @@ def test_touch():
 
 
 def test_distance_and_undo():
+    assert all("UNDO" in each.bl_options for each in operators.CLASSES)  # which pushes by itself where there is a window
     a, b = two_tori(1.0)
     bpy.ops.ed.undo_push(message="before")
     bpy.ops.snug.distance()
