@@ -664,7 +664,17 @@ async function change(index, wanted) {
   await ask();
 }
 
+let opening = 0;
 async function openFile(file, side) {
+  ++opening;
+  try {
+    await openFileAs(file, side);
+  } finally {
+    --opening;
+  }
+}
+
+async function openFileAs(file, side) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const fresh = state.parts.length < 2 && side === 1;
   if (fresh) state.parts.push({ name: file.name, pose: identity.slice(), home: identity.slice(), size: 0, info: null });
@@ -883,7 +893,7 @@ async function start() {
 // For tests and for whoever looks under the bonnet: places, answers and times; a drag of many steps without the mouse.
 window.snugPage = {
   state: () => ({ ready: document.body.dataset.ready, pair: state.pair, poses: state.parts.map((p) => p.pose), names: state.parts.map((p) => p.name),
-    answer: state.answer, busy: asking || redoing }),
+    answer: state.answer, busy: asking || redoing || opening > 0 }),
   commands: () => state.answer && commands(state.answer),
   seen: (point) => view.seen(point),
   middle: (index) => view.parts[index].placedSphere().center.toArray(),
