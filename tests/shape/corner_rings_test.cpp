@@ -1,7 +1,9 @@
 // Limits of the nets at extraordinary corners, against some twenty levels of them.
 
+#include <snug/patch/evaluate.h>
 #include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/corner_rings.h>
+#include <snug/shape/corner_side.h>
 #include <snug/surface/limit_surface.h>
 
 #include <gtest/gtest.h>
@@ -9,11 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <memory>
 #include <numbers>
 #include <random>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace snug::corner_rings_test {
@@ -62,7 +66,13 @@ double widest(const std::vector<double>& v) {
 // Down to where a level is hardly more than rounding.
 void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
   const Kind& kind = *decay.kind;
-  const Patch values = random_values(kind, random);
+  Patch values = random_values(kind, random);
+  // Of a spike: nothing of it.
+  Vector3 seen;
+  for (std::size_t i = 0; i < decay.spike_row.size(); ++i)
+    seen = seen + decay.spike_row[i] * values.points[i];
+  for (std::size_t i = 0; i < decay.spike_row.size(); ++i)
+    values.points[i] = values.points[i] - decay.spike_column[i] * seen;
   const CornerRings rings(decay, values);
   Patch at = values;
   std::vector<Patch> direct;
@@ -122,13 +132,8 @@ using Quad = __float128;
 struct FastestPair {
   std::vector<Quad> row, column;
 };
-FastestPair fastest_pair(const Stencils& step) {
-  const std::size_t n = step.row_count();
-  std::vector<Quad> a(n * n, 0);
-  for (std::size_t r = 0; r < n; ++r) {
-    const Stencils::Row row = step.row(r);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) a[r * n + row.sources[i]] += row.weights[i];
-  }
+FastestPair fastest_pair(const std::vector<Quad>& a) {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(a.size()))));
   // Without constants: they come with one row, whichever is taken off.
   std::vector<Quad> power = a;
   for (std::size_t r = 0; r < n; ++r) {
@@ -161,6 +166,28 @@ FastestPair fastest_pair(const Stencils& step) {
   return pair;
 }
 
+// The fastest ones, each without those before.
+std::vector<FastestPair> fastest_pairs(const Stencils& step, std::size_t count) {
+  const std::size_t n = step.row_count();
+  std::vector<Quad> a(n * n, 0);
+  for (std::size_t r = 0; r < n; ++r) {
+    const Stencils::Row row = step.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) a[r * n + row.sources[i]] += row.weights[i];
+  }
+  std::vector<FastestPair> pairs;
+  while (pairs.size() < count) {
+    const FastestPair& pair = pairs.emplace_back(fastest_pair(a));
+    std::vector<Quad> image(n, 0);
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c) image[r] += a[r * n + c] * pair.column[c];
+    }
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c) a[r * n + c] -= image[r] * pair.row[c];
+    }
+  }
+  return pairs;
+}
+
 Quad extent_of(const std::vector<Quad>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   return (*high - *low) / 2;
@@ -171,8 +198,8 @@ void expect_levels_hold(const RingDecay& decay, std::mt19937_64& random) {
   const Stencils step = decay.kind->children()[decay.corner].stencils();
   const std::size_t n = step.row_count();
   if (n > 24) return;
-  FastestPair pair;
-  if (decay.larger) pair = fastest_pair(step);
+  const std::vector<FastestPair> pairs =
+      fastest_pairs(step, (decay.larger ? 1U : 0U) + (decay.spike_row.empty() ? 0U : 1U));
   for (const double amount : {0.0, 0x1p-40}) {
     for (int trial = 0; trial < 4; ++trial) {
       std::vector<Quad> exact(n);
@@ -182,16 +209,19 @@ void expect_levels_hold(const RingDecay& decay, std::mt19937_64& random) {
         const auto [low, high] = std::minmax_element(exact.begin(), exact.end());
         const Quad middle_of_all = (*low + *high) / 2;
         for (Quad& x : exact) x -= middle_of_all;
-        if (!decay.larger) return;
-        Quad seen = 0;
-        for (std::size_t i = 0; i < n; ++i) seen += pair.row[i] * exact[i];
-        for (std::size_t i = 0; i < n; ++i) exact[i] -= seen * pair.column[i];
+        for (const FastestPair& pair : pairs) {
+          Quad seen = 0;
+          for (std::size_t i = 0; i < n; ++i) seen += pair.row[i] * exact[i];
+          for (std::size_t i = 0; i < n; ++i) exact[i] -= seen * pair.column[i];
+        }
       };
       take_off();
       std::vector<double> values(n);
       std::vector<Quad> off(n);
       for (std::size_t i = 0; i < n; ++i) {
-        const bool up = trial == 0 && decay.larger ? pair.row[i] > 0 : random() % 2 == 0;
+        const bool up = trial < 2 && trial < static_cast<int>(pairs.size())
+                            ? pairs[static_cast<std::size_t>(trial)].row[i] > 0
+                            : random() % 2 == 0;
         values[i] = static_cast<double>(exact[i]) + (up ? amount : -amount);
         off[i] = values[i] - exact[i];
       }
@@ -344,14 +374,16 @@ ControlMesh fan(std::uint32_t n, bool triangles, bool border, std::uint32_t edge
 }
 
 // All kinds at vertex 0 that are found to come again, after some levels.
-std::size_t expect_all_hold(const ControlMesh& mesh, Scheme scheme, std::mt19937_64& random) {
+std::size_t expect_all_hold(const ControlMesh& mesh, Scheme scheme, std::mt19937_64& random,
+                            bool spike = false) {
   const LimitSurface surface(mesh, {.scheme = scheme}, std::make_shared<BoundsCache>());
   std::set<const Kind*> seen;
   for (std::uint32_t p = 0; p < surface.patch_count(); ++p) {
     Patch patch = surface.patch(PatchId(p));
     for (int level = 0; level < 3; ++level) patch = split(patch, 0);
     if (patch.kind->polynomial() || !seen.insert(patch.kind).second) continue;
-    const RingDecay* decay = asymptotics_of(*patch.kind).ring_decay();
+    const CornerAsymptotics& own = asymptotics_of(*patch.kind);
+    const RingDecay* decay = spike ? own.spike_decay() : own.ring_decay();
     SCOPED_TRACE(std::string(name_of(scheme)) + " patch " + std::to_string(p));
     if (decay == nullptr) {
       seen.erase(patch.kind);
@@ -394,15 +426,108 @@ TEST(corner_rings, holds_all_levels_by_rows_that_are_found) {
   EXPECT_GT(expect_all_hold(octahedron, Scheme::midedge, random), 0U);
 }
 
-// Sharp vertices inside whose edges are smooth: values that have nothing of what grows fastest, and such that have.
+// Sharp vertices inside, none or one of whose edges is sharp: values that have nothing of what grows fastest, and such that have.
 TEST(corner_rings, holds_all_levels_at_spikes) {
   std::mt19937_64 random(4);
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
-    for (const std::uint32_t n : {3U, 4U, 5U, 6U, 7U, 8U, 12U, 16U}) {
-      EXPECT_GT(expect_all_hold(fan(n, scheme == Scheme::loop, false, 0, true), scheme, random), 0U)
-          << name_of(scheme) << " spike of " << n;
+    for (const bool seen_along : {false, true}) {
+      for (const std::uint32_t n : {3U, 4U, 5U, 6U, 7U, 8U, 12U, 16U}) {
+        EXPECT_GT(expect_all_hold(fan(n, scheme == Scheme::loop, false, 0, true), scheme, random, seen_along),
+                  0U)
+            << name_of(scheme) << " spike of " << n;
+      }
+    }
+    for (std::uint32_t n = 3; n <= 9; ++n) {
+      // Elsewhere two modes are as large as each other, or three of them larger than the edge's own.
+      const bool known = scheme == Scheme::loop ? n > 3 && n < 9 : n < 6;
+      const std::size_t found =
+          expect_all_hold(fan(n, scheme == Scheme::loop, false, 1, true), scheme, random, true);
+      if (known) EXPECT_GT(found, 0U) << name_of(scheme) << " spike with a sharp edge, of " << n;
     }
   }
+}
+
+// The least value beside the corner, over the largest one of its ring: of corners and middles of pieces, ring by ring.
+double least_beside(Patch patch, unsigned corner, int rings) {
+  double least = INFINITY;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double at_corner = limit_corners(patch)[corner].x;
+    patch.largest = 0;
+    for (Vector3& p : patch.points) {
+      p.x -= at_corner;
+      patch.largest = std::max(patch.largest, std::fabs(p.x));
+    }
+    for (Vector3& p : patch.points) p.x /= patch.largest;
+    patch.largest = 1;
+    patch.path = {};
+    for (unsigned child = 0; child < 4; ++child) {
+      if (child == corner) continue;
+      const Patch piece = split(patch, child);
+      for (unsigned part = 0; part < 4; ++part) {
+        for (const Vector3& p : limit_corners(split(piece, part))) least = std::min(least, p.x);
+      }
+    }
+    patch = split(patch, corner);
+  }
+  return least;
+}
+
+// Corners of borders, and of sharp edges inside: values that are positive in most of them, from wholly to hardly, and grow either way.
+TEST(corner_side, values_that_are_positive_but_at_a_corner_are_so) {
+  std::mt19937_64 random(5);
+  int positive = 0, not_so = 0, missed = 0;
+  const auto cache = std::make_shared<BoundsCache>();
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::bilinear}) {
+    for (std::uint32_t n = 1; n <= 9; ++n) {
+      for (const std::uint32_t edges : {0U, 2U, 3U}) {
+        // A pair of each.
+        if ((edges > 0 && n < std::max(edges, 3U)) || (n + edges + (scheme == Scheme::loop)) % 2 == 0)
+          continue;
+        const LimitSurface surface(fan(n, scheme == Scheme::loop, edges == 0, edges, true),
+                                   {.scheme = scheme}, cache);
+        for (std::uint32_t p = 0; p < surface.patch_count(); ++p) {
+          Patch patch = surface.patch(PatchId(p));
+          unsigned corner = 3;
+          for (unsigned k = 0; k < 3; ++k) {
+            const Vector3 at = limit_corners(patch)[k];
+            if (max_abs(patch.origin + at - Point3{}) < 1e-12) corner = k;
+          }
+          if (corner == 3) continue;
+          const Stencils::Row vertex = patch.kind->corner_limits().row(patch.to_kind(corner));
+          ASSERT_EQ(vertex.sources.size(), 1U);
+          for (int trial = 0; trial < 5; ++trial) {
+            // Down to where values are at the corner's height.
+            const double shift = std::array{0.0, 0.3, 0.6, 0.9}[static_cast<std::size_t>(trial % 4)];
+            const Vector3 along{unit(random), unit(random), 0};
+            const bool plane = trial % 3 == 0;
+            for (std::size_t i = 0; i < patch.points.size(); ++i) {
+              const Vector3 old = surface.patch(PatchId(p)).points[i] + (patch.origin - Point3{});
+              const double own = 0.5 * (unit(random) + 1) - 0.3 * shift;
+              patch.points[i] = {i == vertex.sources[0] ? 0.0
+                                 : plane                ? dot(along, old) + 0.3 * unit(random)
+                                                        : own,
+                                 0, 0};
+            }
+            patch.largest = 0;
+            for (const Vector3& q : patch.points) patch.largest = std::max(patch.largest, std::fabs(q.x));
+            patch.error = 1e-15;
+            const double least = least_beside(patch, corner, 200);
+            const bool proved = certainly_positive_but_at_corner(patch, corner);
+            EXPECT_FALSE(proved && least < -1e-9)
+                << name_of(scheme) << " of " << n << ", " << edges << " sharp edges, patch " << p
+                << ", trial " << trial << ": " << least;
+            positive += proved ? 1 : 0;
+            not_so += least < -1e-9 ? 1 : 0;
+            missed += !proved && least > 1e-3 ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  std::printf("positive %d, not so %d, missed %d\n", positive, not_so, missed);
+  EXPECT_GT(positive, 400);
+  EXPECT_GT(not_so, 250);
+  EXPECT_LT(10 * missed, positive);
 }
 
 // Numbers that are whole multiples of 2^-12 are taken for exact ones. So no weight that is not rational may look so: those of Loop's

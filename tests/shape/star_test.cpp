@@ -792,12 +792,32 @@ TEST(star, of_a_dual_scheme_that_turns_over_in_the_limit_is_never_injective) {
   EXPECT_GT(turned, 300);
 }
 
-// A vertex inside that is sharp by itself: a cusp, seen along it.
-oracle::TaggedMesh cone(std::uint32_t n, bool triangles, double turns, double steep) {
+// A vertex inside that is sharp by itself, with one sharp edge or none: a cusp, seen along it.
+oracle::TaggedMesh cone(std::uint32_t n, bool triangles, double turns, double steep, bool edge = false) {
   const auto height = [steep](double x, double y) { return -steep * std::hypot(x, y); };
   oracle::TaggedMesh mesh = triangles ? disc(n, turns, height) : quad_disc(n, height);
   mesh.corners.push_back({0, 10});
+  const std::uint32_t around = triangles ? n : 2 * n;
+  for (std::uint32_t ring = 0; edge && ring < 3; ++ring)
+    mesh.creases.push_back({ring == 0 ? 0 : 1 + (ring - 1) * around, 1 + ring * around, 10});
   return mesh;
+}
+
+TEST(star, at_a_spike_with_a_sharp_edge_is_injective) {
+  for (const bool triangles : {true, false}) {
+    for (std::uint32_t n = triangles ? 4 : 3; n <= (triangles ? 8U : 5U); ++n) {
+      for (const double steep : {0.3, 1.0, 3.0}) {
+        auto mesh = cone(n, triangles, 1, steep, true);
+        for (auto& p : mesh.points) p = {p[0] + 0.3 * p[2], 0.7 * p[1] - 0.2 * p[0], p[2] + 0.1 * p[0]};
+        const LimitSurface surface = surface_of(mesh, triangles ? Scheme::loop : Scheme::catmark);
+        for (unsigned level = 2; level <= 4; ++level) {
+          const CentreStar star = star_at_centre(surface, level);
+          EXPECT_TRUE(certainly_injective(star.sectors, star.closed))
+              << (triangles ? "triangles " : "quads ") << n << ", " << steep << ", level " << level;
+        }
+      }
+    }
+  }
 }
 
 TEST(star, at_a_spike_is_injective) {
@@ -828,7 +848,7 @@ TEST(star, at_a_spike_that_turns_over_is_never_injective) {
     const bool triangles = random() % 2 == 0;
     const std::uint32_t n = 3 + static_cast<std::uint32_t>(random() % 8);
     auto mesh = cone(n, triangles, triangles && trial % 8 == 0 && n > 4 ? 2 : 1,
-                     std::array{0.3, 1.0, 4.0}[random() % 3]);
+                     std::array{0.3, 1.0, 4.0}[random() % 3], random() % 2 == 0);
     const double amount = std::array{0.1, 0.5, 1.0, 2.0}[random() % 4];
     const std::size_t moved = random() % 2 == 0 ? 1 + (triangles ? n : 2 * n) : mesh.points.size();
     for (std::size_t v = 1; v < moved; ++v) {
@@ -842,10 +862,20 @@ TEST(star, at_a_spike_that_turns_over_is_never_injective) {
       Vector3 along;
       for (const auto& [patch, centre] : star.sectors) {
         Patch deep = *patch;
-        deep.path = {};
-        for (int k = 0; k < 24; ++k) deep = split(deep, static_cast<unsigned>(centre));
-        const auto corners = limit_corners(deep);
-        along = along + (corners[(centre + 1) % 3] - corners[centre]);
+        Vector3 spoke;
+        for (int k = 0; k < 80; ++k) {
+          const auto corners = limit_corners(deep);
+          spoke = corners[(centre + 1) % 3] - corners[centre];
+          double largest = 0;
+          for (Vector3& p : deep.points) {
+            p = p - corners[centre];
+            largest = std::max(largest, max_abs(p));
+          }
+          for (Vector3& p : deep.points) p = (1 / largest) * p;
+          deep.path = {};
+          deep = split(deep, static_cast<unsigned>(centre));
+        }
+        along = along + spoke;
       }
       bool up = false, down = false;
       for (const auto& [patch, centre] : star.sectors) {

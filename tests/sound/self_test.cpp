@@ -98,9 +98,10 @@ bool crosses(const oracle::TaggedMesh& fine, double margin) {
   return oracle::crossing_triangles(points, triangles, margin).has_value();
 }
 
-oracle::TaggedMesh refined(const oracle::TaggedMesh& mesh, Scheme scheme) {
-  if (scheme == Scheme::doo_sabin) return oracle::refine_dual(mesh, oracle::DualScheme::doo_sabin, 3);
-  if (scheme == Scheme::midedge) return oracle::refine_dual(mesh, oracle::DualScheme::midedge, 4);
+oracle::TaggedMesh refined(const oracle::TaggedMesh& mesh, Scheme scheme, int further = 0) {
+  if (scheme == Scheme::doo_sabin)
+    return oracle::refine_dual(mesh, oracle::DualScheme::doo_sabin, 3 + further);
+  if (scheme == Scheme::midedge) return oracle::refine_dual(mesh, oracle::DualScheme::midedge, 4 + further);
   oracle::Rules rules;
   rules.scheme = scheme == Scheme::loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
   return oracle::refine(mesh, rules, 3);
@@ -492,7 +493,7 @@ TEST(self, verdicts_of_bent_quads_at_a_vertex_are_those_of_refined_ones) {
   }
 }
 
-// SNUG_SELF_BODIES: how many. SNUG_SELF_FIRST: the number of the first one.
+// SNUG_SELF_BODIES: how many. SNUG_SELF_FIRST: the number of the first one. What a coarse refined mesh disputes a finer one decides.
 TEST(self, verdicts_with_all_tags_are_those_of_refined_meshes) {
   const std::uint64_t count = testing::number_of("SNUG_SELF_BODIES", 16),
                       first = testing::number_of("SNUG_SELF_FIRST", 1);
@@ -506,24 +507,29 @@ TEST(self, verdicts_with_all_tags_are_those_of_refined_meshes) {
       found =
           self_contact(Surface(testing::control_mesh(body.mesh, body.rules),
                                {.scheme = body.scheme, .boundary = testing::options_of(body.rules).boundary}),
-                       {}, {.max_splits = 20'000});
+                       {}, {});
     } catch (const InputError&) {
       ++counts["refused"];
       continue;
     }
     const bool dual = body.scheme == Scheme::midedge || body.scheme == Scheme::doo_sabin;
-    const oracle::TaggedMesh fine =
-        dual ? refined(body.mesh, body.scheme) : oracle::refine(body.mesh, body.rules, 4);
-    const bool crossing = crosses(fine, dual ? 0.005 : 0.0015);
+    const auto fine = [&](int further) {
+      return dual ? refined(body.mesh, body.scheme, further)
+                  : oracle::refine(body.mesh, body.rules, 4 + further);
+    };
+    const oracle::TaggedMesh coarse = fine(0);
+    const bool crossing = crosses(coarse, dual ? 0.005 : 0.0015);
     ++counts[std::string(name_of(found.verdict)) + (crossing ? ", twin crosses" : ", twin does not")];
-    if (crossing) {
-      EXPECT_NE(found.verdict, SelfVerdict::clear) << body.name << ", number " << number;
-    } else if (found.verdict == SelfVerdict::intersecting && !found.pairs[0].touching && !crosses(fine, 0)) {
+    const std::string name = "number " + std::to_string(number) + ": " + body.name;
+    if (crossing && found.verdict == SelfVerdict::clear) {
+      EXPECT_FALSE(crosses(fine(1), 0)) << name;
+    } else if (!crossing && found.verdict == SelfVerdict::intersecting && !found.pairs[0].touching &&
+               !crosses(coarse, 0) && !crosses(fine(2), 0)) {
       ++counts["intersecting, twin does not at all"];
-      std::printf("number %llu: %s\n", static_cast<unsigned long long>(number), body.name.c_str());
+      std::printf("%s\n", name.c_str());
     }
     if (found.verdict == SelfVerdict::undecided && testing::number_of("SNUG_SELF_PRINT", 0) > 0)
-      std::printf("undecided, number %llu: %s\n", static_cast<unsigned long long>(number), body.name.c_str());
+      std::printf("undecided, %s\n", name.c_str());
   }
   for (const auto& [what, number] : counts) {
     std::printf("%s: %llu\n", what.c_str(), static_cast<unsigned long long>(number));

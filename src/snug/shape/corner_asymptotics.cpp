@@ -119,6 +119,11 @@ const RingDecay* CornerAsymptotics::ring_decay() const {
   return decay ? &*decay : nullptr;
 }
 
+const RingDecay* CornerAsymptotics::spike_decay() const {
+  const auto& decay = spike_.get([&] { return make_spike_decay(kind_); });
+  return decay ? &*decay : nullptr;
+}
+
 const CornerForms* CornerAsymptotics::forms() const {
   const auto& forms = forms_.get([&] { return make_corner_forms(kind_, area_factor()); });
   return forms ? &*forms : nullptr;

@@ -23,6 +23,8 @@ class CornerAsymptotics {
 
   /// Null where there is none, see make_ring_decay().
   [[nodiscard]] const RingDecay* ring_decay() const;
+  /// Null where there is none, see make_spike_decay().
+  [[nodiscard]] const RingDecay* spike_decay() const;
 
   // Upper bounds by d, the diagonal of the box around the control points, for patches and for whole quads that
   // patches are halves of. Infinite where none is found, which happens to Midedge alone, beside a face of very many
@@ -43,7 +45,7 @@ class CornerAsymptotics {
 
   const Kind& kind_;
   Lazy<std::optional<CharacteristicMap>> map_;
-  Lazy<std::optional<RingDecay>> decay_;
+  Lazy<std::optional<RingDecay>> decay_, spike_;
   Lazy<std::optional<CornerForms>> forms_;
   std::array<Lazy<double>, 2> factors_;  // of each Measure
 };

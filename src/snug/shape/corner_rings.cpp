@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <snug/geometry/interval.h>
@@ -42,10 +43,10 @@ RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector
   Level first{std::move(values), 0, 0};
   first.off = enlarged(error + gamma_bound(2) * largest_of(first.values));
   centre(first.values);
-  first.off += take_off_largest(first);
+  first.off += take_off_larger(first);
   first.largest = largest_of(first.values);
   all_off_ = first.off;
-  if (decay.larger) first.off = off_of(0);
+  if (decay.larger || !decay.spike_row.empty()) first.off = off_of(0);
   levels_.reserve(64);
   levels_.push_back(std::move(first));
   std::vector<double> parts;
@@ -69,23 +70,35 @@ void RingValues::descend_to(std::size_t count) {
   while (levels_.size() < count + order_of(*decay_) + 1) descend();
 }
 
-// What the largest row sees is rounding, and would grow. Returns what the values are off more, beside that.
-double RingValues::take_off_largest(Level& level) {
+// What larger rows see is rounding, and would grow. Returns what the values are off more, beside that.
+double RingValues::take_off_larger(Level& level) {
   const RingDecay& decay = *decay_;
-  if (!decay.larger) return 0;
   const std::size_t size = level.values.size();
-  double seen = 0, sum = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    seen += decay.largest_row[i] * level.values[i];
-    sum += std::fabs(decay.largest_row[i]);
+  const auto seen_by = [&](const std::vector<double>& row) {
+    return std::inner_product(row.begin(), row.end(), level.values.begin(), 0.0);
+  };
+  double off = 0;
+  const auto take_off = [&](const std::vector<double>& row, const std::vector<double>& column,
+                            double column_off) {
+    if (row.empty()) return;
+    const double seen = seen_by(row);
+    for (std::size_t i = 0; i < size; ++i) level.values[i] -= seen * column[i];
+    const double large = largest_of(level.values) + 2 * std::fabs(seen) * largest_of(column);
+    off = enlarged(off + gamma_bound(3) * large + std::fabs(seen) * column_off);
+  };
+  take_off(decay.spike_row, decay.spike_column, decay.spike_off);
+  take_off(decay.largest_row, decay.largest_column, decay.column_off);
+  // Of what is left, as a share of the row's sum, which `seen` holds.
+  larger_off_ = 0;
+  const double large = largest_of(level.values);
+  for (const std::vector<double>* row : {&decay.spike_row, &decay.largest_row}) {
+    if (row->empty()) continue;
+    double sum = 0;
+    for (const double weight : *row) sum += std::fabs(weight);
+    larger_off_ = enlarged(larger_off_ + std::fabs(seen_by(*row)) / sum +
+                           (decay.row_error / sum + gamma_bound(size + 6)) * 2 * large);
   }
-  for (std::size_t i = 0; i < size; ++i) level.values[i] -= seen * decay.largest_column[i];
-  const double moved = std::fabs(seen) * largest_of(decay.largest_column);
-  const double large = largest_of(level.values) + 2 * moved;
-  // As a share of the row's sum, which `seen` holds.
-  largest_off_ = enlarged((decay.row_error / sum + gamma_bound(size + 6)) * 2 * large +
-                          std::fabs(seen) * decay.column_off);
-  return enlarged(gamma_bound(3) * large + std::fabs(seen) * decay.column_off);
+  return off;
 }
 
 // One level on, over a number near the eigenvalue: levels are scaled anyhow. Of an error what the rows see grows as they do.
@@ -97,7 +110,7 @@ void RingValues::descend() {
   apply(*step_, before.values, next.values);
   for (double& x : next.values) x /= least;
   centre(next.values);
-  const double taken_off = take_off_largest(next);
+  const double taken_off = take_off_larger(next);
   next.largest = largest_of(next.values);
   const double off = rounding_ * (before.largest / least) + taken_off;
   all_off_ = enlarged(all_off_ + off);
@@ -111,7 +124,7 @@ double RingValues::off_of(std::size_t level) const {
   const RingDecay& decay = *decay_;
   // Chains grow as the number of steps does.
   const double seen = decay.seen + decay.chain_seen * static_cast<double>(level);
-  return enlarged((decay.most * (1 + decay.seen) + seen) * all_off_ + decay.seen * largest_off_);
+  return enlarged((decay.most * (1 + decay.seen) + seen) * all_off_ + decay.seen * larger_off_);
 }
 
 RingValues::Level RingValues::difference(std::size_t level, unsigned order) const {
@@ -155,11 +168,11 @@ void RingValues::add_up(std::vector<double> parts) {
   }
 }
 
-CornerRings::CornerRings(const RingDecay& decay, const Patch& values, bool across)
+CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
     : decay_(&decay),
       step_(decay.kind->children()[decay.corner].stencils()),
       first_(values.first),
-      grows_(decay.larger && !across) {
+      grows_(decay.larger) {
   std::array<std::vector<double>, 2> centred;
   for (std::size_t c = 0; c < 2; ++c) {
     for (const Vector3& p : values.points) centred[c].push_back(c == 0 ? p.x : p.y);

@@ -15,7 +15,7 @@ namespace snug {
 /// Source:    derivations/self_contact.md, "All rings at once".
 class RingValues {
  public:
-  /// Of the kind's control points, each off by `error` at most; but for errors nothing of the larger eigenvalue is in them.
+  /// Of the kind's control points, each off by `error` at most; but for errors nothing of larger eigenvalues is in them.
   RingValues(const RingDecay& decay, const Stencils& step, std::vector<double> values, double error);
   /// The values of a level, or differences of them; what the exact ones are off, in extents.
   struct Level {
@@ -39,7 +39,7 @@ class RingValues {
 
  private:
   void descend();
-  [[nodiscard]] double take_off_largest(Level& level);
+  [[nodiscard]] double take_off_larger(Level& level);
   [[nodiscard]] Level step_between(const Level& from, const Level& to) const;
   [[nodiscard]] double off_of(std::size_t level) const;
   void add_up(std::vector<double> parts);
@@ -50,17 +50,17 @@ class RingValues {
   double rounding_ = 0;   // of a step, of values of size 1
   std::vector<Level> levels_;
   double all_off_ = 0;         // the sum of what each step was off
-  double largest_off_ = 0;     // of a level, what the largest row may see
+  double larger_off_ = 0;      // of a level, what larger rows may see
   std::vector<Sums> further_;  // of each level, and, last, of those beyond
 };
 
 /// The nets of control values (x, y, 0) at an extraordinary corner, level after level, moved, along axes that suit them.
 ///
-/// Requires:  values of the kind's control points, in x and y; with `across`: but for errors nothing of the larger eigenvalue is in them.
+/// Requires:  values of the kind's control points, in x and y; where there is a spike: but for errors nothing of it is in them.
 /// Source:    derivations/self_contact.md, "All rings at once".
 class CornerRings {
  public:
-  CornerRings(const RingDecay& decay, const Patch& values, bool across = false);
+  CornerRings(const RingDecay& decay, const Patch& values);
   /// How many levels it is of use to look at; at least one.
   [[nodiscard]] std::size_t count() const { return count_; }
   /// What the coordinates of a level's nets are of values: dot products with these, up to `axis_off` in each number, over a positive

@@ -20,6 +20,10 @@ const RingDecay* decay_of(const Kind& kind) {
   return kind.polynomial() ? nullptr : asymptotics_of(kind).ring_decay();
 }
 
+const RingDecay* decay_across_spike(const Kind& kind) {
+  return kind.polynomial() ? nullptr : asymptotics_of(kind).spike_decay();
+}
+
 bool ends_fan(const Patch& patch, unsigned corner, unsigned edge) {
   const CornerFan& fan = patch.kind->corner(patch.to_kind(corner));
   // Not the line through a quad that its halves share.

@@ -56,6 +56,8 @@ bool each_curve(const Patch& patch, unsigned edge, const Visit& visit) {
 
 /// How nets change at the extraordinary corner where the patch's kind comes again; null where there is none.
 [[nodiscard]] const RingDecay* decay_of(const Kind& kind);
+/// The same of a spike that is seen along (make_spike_decay).
+[[nodiscard]] const RingDecay* decay_across_spike(const Kind& kind);
 [[nodiscard]] inline unsigned corner_of(const RingDecay& tip, const Patch& patch) {
   return static_cast<unsigned>((tip.corner + patch.first) % 3);
 }

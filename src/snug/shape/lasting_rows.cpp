@@ -285,9 +285,9 @@ Interval around(const Pair& pair) {
   return {rounded_down(pair.eigenvalue - pair.off), rounded_up(pair.eigenvalue + pair.off)};
 }
 
-bool add_larger(const Matrix& a, double error, Pair first, LastingRows& result) {
+std::optional<LastingColumn> add_row(const Matrix& a, double error, Pair first, LastingRows& result) {
   const std::size_t size = a.size();
-  if (!verify(a, error, first)) return false;
+  if (!verify(a, error, first)) return std::nullopt;
   // From the right: the rows of what is turned over.
   Matrix turned(size, Row(size));
   for (std::size_t r = 0; r < size; ++r) {
@@ -295,24 +295,23 @@ bool add_larger(const Matrix& a, double error, Pair first, LastingRows& result) 
   }
   Pair right = first;
   right.row = first.column;
-  if (!verify(turned, error, right)) return false;
+  if (!verify(turned, error, right)) return std::nullopt;
+  LastingColumn own;
   double seen = 0, sum = 0;
   for (std::size_t i = 0; i < size; ++i) {
     seen += first.row[i] * right.row[i];
     sum += std::fabs(first.row[i]) + std::fabs(right.row[i]);
   }
-  for (const double x : right.row) result.column.push_back(x / seen);
+  for (const double x : right.row) own.column.push_back(x / seen);
   const double seen_off =
       enlarged((first.off + right.off + gamma_bound(size + 2) * largest_of(first.row)) * sum);
-  if (!(seen_off < 0x1p-20 * std::fabs(seen))) return false;
-  result.column_error =
-      enlarged(right.off / std::fabs(seen) +
-               (2 * seen_off / std::fabs(seen) + gamma_bound(3)) * largest_of(result.column));
+  if (!(seen_off < 0x1p-20 * std::fabs(seen))) return std::nullopt;
+  own.error = enlarged(right.off / std::fabs(seen) +
+                       (2 * seen_off / std::fabs(seen) + gamma_bound(3)) * largest_of(own.column));
+  own.ratio = around(first) / result.least;
   result.rows.push_back(first.row);
   result.error = std::max(result.error, enlarged(static_cast<double>(size) * first.off));
-  result.larger = true;
-  result.ratio = around(first) / result.least;
-  return true;
+  return own;
 }
 
 // Of entries that are not exact.
@@ -320,16 +319,14 @@ double entry_error(const Stencils& step, const Matrix& a) {
   return is_exact(a) ? 0 : step.max_error() + gamma_bound(2);
 }
 
-}  // namespace
-
-std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t size) {
-  const Matrix a = dense(step, size);
-  const std::optional<Pair> found = largest_pair(a, {});
+// All that lasts beside some pairs.
+std::optional<LastingRows> find_rows_beside(const Matrix& a, double error, std::vector<Pair> before) {
+  const std::optional<Pair> found = largest_pair(a, before);
   if (!found) return std::nullopt;
   const Pair& first = *found;
+  before.push_back(first);
   LastingRows result;
-  const auto count = static_cast<double>(size);
-  const double error = entry_error(step, a);
+  const auto count = static_cast<double>(a.size());
   std::optional<Pair> second;
   for (const double eigenvalue : {0.5, 0.25}) {
     if (first.eigenvalue < eigenvalue - same) continue;
@@ -340,30 +337,43 @@ std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t s
     const bool alone = first.eigenvalue < most;
     if (exact->rows.size() < (alone ? 2 : 1)) continue;
     if (!alone) {
-      if (!second) second = largest_pair(a, {first});
+      if (!second) second = largest_pair(a, before);
       if (second && second->eigenvalue > most) break;
     }
     result.rows = std::move(exact->rows);
     result.least = Interval(eigenvalue);
     result.links = exact->links;
-    if (!alone && !add_larger(a, error, first, result)) return std::nullopt;
+    if (!alone && !(result.larger = add_row(a, error, first, result))) return std::nullopt;
     return result;
   }
-  if (!second) second = largest_pair(a, {first});
+  if (!second) second = largest_pair(a, before);
   if (!second || second->eigenvalue > first.eigenvalue - same || !verify(a, error, *second))
     return std::nullopt;
   result.rows = {second->row};
   result.error = enlarged(count * second->off);
   result.least = around(*second);
-  if (!(result.least.lower > 0) || !add_larger(a, error, first, result)) return std::nullopt;
+  if (!(result.least.lower > 0) || !(result.larger = add_row(a, error, first, result))) return std::nullopt;
   return result;
 }
 
-bool add_largest_row(const Stencils& step, std::size_t size, LastingRows& rows) {
+}  // namespace
+
+std::optional<LastingRows> find_lasting_rows(const Stencils& step, std::size_t size, bool spike) {
+  const Matrix a = dense(step, size);
+  const double error = entry_error(step, a);
+  if (!spike) return find_rows_beside(a, error, {});
+  const std::optional<Pair> first = largest_pair(a, {});
+  if (!first) return std::nullopt;
+  std::optional<LastingRows> result = find_rows_beside(a, error, {*first});
+  if (!result || !(result->spike = add_row(a, error, *first, *result))) return std::nullopt;
+  return result;
+}
+
+std::optional<LastingColumn> add_largest_row(const Stencils& step, std::size_t size, LastingRows& rows) {
   const Matrix a = dense(step, size);
   const std::optional<Pair> first = largest_pair(a, {});
-  return first && first->eigenvalue > rows.least.upper + same &&
-         add_larger(a, entry_error(step, a), *first, rows);
+  if (!first || !(first->eigenvalue > rows.least.upper + same)) return std::nullopt;
+  return add_row(a, entry_error(step, a), *first, rows);
 }
 
 }  // namespace snug

@@ -185,8 +185,8 @@ class LeftTurn {
   // Of a patch at a spike that it is seen along.
   bool holds_around_spike(const Patch& patch, unsigned corner, unsigned levels) {
     if (levels == 0) return false;
-    if (const RingDecay* tip = decay_of(*patch.kind))
-      return tip->spike && corner_of(*tip, patch) == corner && tip_holds(*tip, patch, levels - 1, true);
+    if (const RingDecay* tip = decay_across_spike(*patch.kind))
+      return corner_of(*tip, patch) == corner && tip_holds(*tip, patch, levels - 1);
     for (unsigned child = 0; child < 4; ++child) {
       if (!(child == corner ? holds_around_spike(split(patch, child), corner, levels - 1)
                             : child_holds({&patch, 1}, child, levels - 1, {})))
@@ -203,7 +203,7 @@ class LeftTurn {
     return holds(std::span(pieces).first(nets.size()), levels, at.of(child));
   }
 
-  bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels, bool across = false) {
+  bool tip_holds(const RingDecay& tip, const Patch& patch, unsigned levels) {
     const unsigned corner = corner_of(tip, patch);
     std::vector<FanEnd> ends;
     for (const unsigned edge : {corner, (corner + 2) % 3}) {
@@ -223,7 +223,7 @@ class LeftTurn {
       }
       return true;
     };
-    const CornerRings rings(tip, patch, across);
+    const CornerRings rings(tip, patch);
     for (std::size_t ring = 0; ring < std::min(rings.count(), max_single_rings); ++ring) {
       const std::vector<Patch> further = rings.all_further(ring);
       const bool may_hold = further.size() > 1 || further[0].error < max_net_share * further[0].largest;

@@ -120,7 +120,9 @@ class DecaySearch {
     MatrixPower power(step_, size_);
     power.remove(limit_);
     // Not so far that one column is all that is left of each.
-    double apart = lasting_.ratio.upper;
+    double apart = lasting_.spike    ? lasting_.spike->ratio.upper
+                   : lasting_.larger ? lasting_.larger->ratio.upper
+                                     : 1;
     for (int i = 0; i < improving_squarings && apart < 1e4 && power.sum > 1e-140; ++i, apart *= apart)
       power.square();
     const std::size_t m = columns_.size();
@@ -152,6 +154,7 @@ class DecaySearch {
   // B^k V' = V' (L / l)^k + sum of B^i r (L / l)^(k - 1 - i). Of a chain powers grow as k does: what is multiplied by k elsewhere.
   bool bound_seen(RingDecay& decay) const {
     const std::size_t m = columns_.size();
+    const std::size_t of_least = m - (lasting_.larger ? 1 : 0) - (lasting_.spike ? 1 : 0);
     const double least = middle(decay.least), rest = 1 - decay.factor;
     const auto period = static_cast<double>(decay.period);
     Row image;
@@ -188,7 +191,7 @@ class DecaySearch {
           enlarged(2 * extent(columns_[t]) + decay.most * unseen[t] * period / rest * period / rest);
       const double row_sum = abs_sum(lasting_.rows[t]) + lasting_.error;
       seen += grown * row_sum;
-      if (lasting_.links > 0 && !(lasting_.larger && t + 1 == m)) {
+      if (lasting_.links > 0 && t < of_least) {
         // At each step a chain moves this column by others, and with them comes what W does not see of these.
         Row moved = images[t];
         for (std::size_t i = 0; i < size_; ++i) moved[i] = moved[i] / least - columns_[t][i];
@@ -198,12 +201,18 @@ class DecaySearch {
         decay.chain_seen = enlarged(
             decay.chain_seen + 2 * (extent(moved) + with_it * (1 + decay.most * period / rest)) * row_sum);
       }
-      // The larger eigenvalue's row is the last one. Of its column what W does not see is the sum of B^i r / q^(i + 1).
-      if (!lasting_.larger || t + 1 < m) continue;
-      decay.largest_row = lasting_.rows[t];
-      decay.largest_column = lasting_.column;
-      decay.row_error = lasting_.error;
-      decay.column_off = lasting_.column_error;
+    }
+    // Of a larger eigenvalue's column what W does not see is the sum of B^i r / q^(i + 1).
+    decay.row_error = lasting_.error;
+    if (lasting_.larger) {
+      decay.largest_row = lasting_.rows[of_least];
+      decay.largest_column = lasting_.larger->column;
+      decay.column_off = lasting_.larger->error;
+    }
+    if (lasting_.spike) {
+      decay.spike_row = lasting_.rows.back();
+      decay.spike_column = lasting_.spike->column;
+      decay.spike_off = lasting_.spike->error;
     }
     decay.seen = enlarged(2 * seen);
     return std::isfinite(decay.seen);
@@ -216,9 +225,16 @@ class DecaySearch {
   std::vector<Row> columns_;
 };
 
-// At a vertex inside that is sharp by itself: the rows of first modes have no weight at it, and no other point's rule sees whether it is
-// sharp, so they are those of a smooth vertex.
-std::optional<LastingRows> rows_of_spike(const Kind& kind, std::size_t corner, const Stencils& step) {
+// Of kinds that have the fan: no edge of it is sharp, or one.
+bool is_spike(const CornerFan& fan) { return fan.sharp && fan.closed != fan.odd; }
+
+// At a vertex inside that is sharp by itself, with smooth edges: the rows of first modes have no weight at it, and no other point's rule
+// sees that it is sharp, so they are those of a smooth vertex. The last row is that of the largest eigenvalue.
+struct RowsOfSpike {
+  LastingRows rows;
+  LastingColumn largest;
+};
+std::optional<RowsOfSpike> rows_of_spike(const Kind& kind, std::size_t corner, const Stencils& step) {
   constexpr double rounding = 64 * unit_roundoff, no_eigenvector = 1e-12;
   KindKey smooth = kind.key();
   smooth.corners[corner].sharp = false;
@@ -246,35 +262,77 @@ std::optional<LastingRows> rows_of_spike(const Kind& kind, std::size_t corner, c
     if (!(row.abs_sum > 0)) return std::nullopt;
   }
   result.least = {eigenvalue * (1 - rounding), eigenvalue * (1 + rounding)};
-  if (!add_largest_row(step, kind.control_count(), result)) return std::nullopt;
-  return result;
+  std::optional<LastingColumn> largest = add_largest_row(step, kind.control_count(), result);
+  if (!largest) return std::nullopt;
+  return RowsOfSpike{std::move(result), std::move(*largest)};
 }
 
-}  // namespace
+// Where one edge of a fan is sharp the other ones' points take part in modes that are 0 on it: those of a smooth fan of twice as many
+// faces. Other eigenvalues are 1/2, the edge's own, and at most 1/4. The largest one is alone and far from all others.
+bool is_largest(const Kind& kind, std::size_t corner, const Interval& eigenvalue) {
+  constexpr double apart = 1e-6;
+  CornerFan smooth = kind.corner(corner);
+  smooth.closed = true;
+  smooth.sharp = smooth.odd = false;
+  return eigenvalue.lower > std::max(0.5, kind.rules().shrink_factor(smooth)) + apart;
+}
 
-std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicMap* map) {
-  if (map != nullptr) return map->decay();
+std::optional<LastingRows> rows_across_spike(const Kind& kind, std::size_t corner, const Stencils& step) {
+  if (kind.corner(corner).odd) {
+    std::optional<LastingRows> rows = find_lasting_rows(step, kind.control_count(), true);
+    if (!rows || !is_largest(kind, corner, rows->spike->ratio * rows->least)) return std::nullopt;
+    return rows;
+  }
+  std::optional<RowsOfSpike> found = rows_of_spike(kind, corner, step);
+  if (!found) return std::nullopt;
+  found->rows.spike = std::move(found->largest);
+  return std::move(found->rows);
+}
+
+std::optional<LastingRows> rows_of(const Kind& kind, std::size_t corner, const Stencils& step) {
+  if (!is_spike(kind.corner(corner)) || kind.corner(corner).odd)
+    return find_lasting_rows(step, kind.control_count());
+  std::optional<RowsOfSpike> found = rows_of_spike(kind, corner, step);
+  if (!found) return std::nullopt;
+  found->rows.larger = std::move(found->largest);
+  return std::move(found->rows);
+}
+
+// find(kind, corner, step) of the corner that a kind comes again at.
+template <class Find>
+std::optional<RingDecay> decay_at_corner(const Kind& kind, const Find& find) {
   if (kind.polynomial() || kind.transient() || kind.key().polygon || kind.control_count() > largest_size)
     return std::nullopt;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
     if (kind.regular_corner(corner) || child.kind != &kind || child.first != 0) continue;
     const Stencils step = child.stencils();
-    RingDecay decay;
-    decay.spike = kind.corner(corner).closed && kind.corner(corner).sharp && !kind.corner(corner).odd;
-    const std::optional<LastingRows> lasting =
-        decay.spike ? rows_of_spike(kind, corner, step) : find_lasting_rows(step, kind.control_count());
+    const std::optional<LastingRows> lasting = find(kind, corner, step);
     if (!lasting) return std::nullopt;
+    RingDecay decay;
     decay.kind = &kind;
     decay.corner = corner;
     decay.least = lasting->least;
-    decay.larger = lasting->larger;
-    decay.ratio = lasting->ratio;
+    decay.larger = lasting->larger.has_value();
+    if (lasting->larger) decay.ratio = lasting->larger->ratio;
     decay.links = lasting->links;
     if (!DecaySearch(step, kind.corner_limits().row(corner), *lasting).find(decay)) return std::nullopt;
     return decay;
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicMap* map) {
+  if (map != nullptr) return map->decay();
+  return decay_at_corner(kind, rows_of);
+}
+
+std::optional<RingDecay> make_spike_decay(const Kind& kind) {
+  return decay_at_corner(kind, [](const Kind& own, std::size_t corner, const Stencils& step) {
+    return is_spike(own.corner(corner)) ? rows_across_spike(own, corner, step) : std::nullopt;
+  });
 }
 
 }  // namespace snug

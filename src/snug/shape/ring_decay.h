@@ -21,10 +21,11 @@ struct RingDecay {
   bool larger = false;                              ///< a larger one, of one row of W, beside the least one
   Interval ratio{1};                                ///< of that one to the least one
   std::vector<double> largest_row, largest_column;  ///< about that row of W, and that column of V, W V = 1
-  bool spike =
-      false;  ///< at a vertex inside that is sharp by itself: the least one is that of two rows, which see the sheet's turn
+  std::vector<double> spike_row,
+      spike_column;  ///< the same of a third one, the largest, if nets are known to have nothing of it (make_spike_decay)
   double row_error = 0,
-         column_off = 0;  ///< of the row, in sum; of the column, in extents, and as what other rows see of it
+         column_off = 0,  ///< of each row, in sum; of a column, in extents, and as what other rows see of it
+      spike_off = 0;      ///< of the spike's column
   std::size_t links =
       0;  ///< nets grow as j times the least one's powers, by so many rows of W: a chain (LastingRows)
   /// Of what W does not see, over powers of the least eigenvalue: at most `most` times as large, and `factor` after `period` steps.
@@ -37,5 +38,10 @@ struct RingDecay {
 
 /// That of limit tangents, if there is a map, else of the rows that last; none where neither is found.
 [[nodiscard]] std::optional<RingDecay> make_ring_decay(const Kind& kind, const CharacteristicMap* map);
+
+/// At a vertex inside that is sharp by itself, none or one of its edges being sharp: of nets that have nothing of what grows fastest. All
+/// faces of the vertex have one direction of that.
+/// Source:    derivations/self_contact.md, "Spikes".
+[[nodiscard]] std::optional<RingDecay> make_spike_decay(const Kind& kind);
 
 }  // namespace snug

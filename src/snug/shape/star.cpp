@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/shape/corner_rings.h>
+#include <snug/shape/corner_side.h>
 #include <snug/shape/flat_patch.h>
 #include <snug/shape/left_turn.h>
 #include <support/direction.h>
@@ -236,11 +238,79 @@ std::array<Vector3, 2> spokes_of(const StarSector& sector) {
   return {limits[(sector.centre + 1) % 3] - c, limits[(sector.centre + 2) % 3] - c};
 }
 
+// A sector from where its nets come again at the centre; none where they do not.
+template <class Decay>
+std::optional<Patch> at_tip(const StarSector& sector, const Decay& decay) {
+  const auto centre = static_cast<unsigned>(sector.centre);
+  Patch patch = *sector.patch;
+  patch.path = {};
+  for (unsigned levels = corner_levels; levels > 0 && !patch.kind->polynomial(); --levels) {
+    if (const RingDecay* const tip = decay(*patch.kind)) {
+      if (corner_of(*tip, patch) != centre) return std::nullopt;
+      return patch;
+    }
+    patch = split(patch, centre);
+  }
+  return std::nullopt;
+}
+
+// The same where the centre is a spike that is seen along.
+std::optional<Patch> at_spike(const StarSector& sector) {
+  const auto centre = static_cast<unsigned>(sector.centre);
+  if (!sector.patch->kind->corner(sector.patch->to_kind(centre)).sharp) return std::nullopt;
+  return at_tip(sector, decay_across_spike);
+}
+
+bool grows_along_one_direction(const RingDecay& decay) { return decay.larger || decay.links > 0; }
+
+// Some vectors of a sector's pieces at its centre, near it and farther off. Where nets grow along one direction more than along others,
+// what these tend to is among them. make(patch) of a piece, which is moved and scaled: as many each time, of so many lengths each, 0
+// where they are little more than rounding.
+template <class Make>
+void add_of_rings(const StarSector& sector, int lengths, const Make& make, std::vector<Vector3>& vectors) {
+  constexpr unsigned few = 4, many = 64;
+  constexpr double growth = 1e-9;
+  const std::optional<Patch> tip = at_tip(sector, decay_of);
+  const RingDecay* const decay = tip ? decay_of(*tip->kind) : nullptr;
+  const bool grows = decay != nullptr && grows_along_one_direction(*decay);
+  Patch patch = *sector.patch;
+  std::vector<Vector3> last;
+  double scale = 1;  // over powers of the least eigenvalue
+  for (unsigned level = 0; level <= (grows ? many : few); ++level) {
+    const Vector3 centre = limit_corners(patch)[sector.centre];
+    patch.largest = 0;
+    for (Vector3& p : patch.points) {
+      p = p - centre;
+      patch.largest = std::max(patch.largest, max_abs(p));
+    }
+    if (!(patch.largest > 0)) return;
+    for (Vector3& p : patch.points) p = (1 / patch.largest) * p;
+    scale *= patch.largest;
+    patch.largest = 1;
+    patch.path = {};
+    if ((level & (level - 1)) == 0) {
+      std::vector<Vector3> now = make(patch);
+      std::copy_if(now.begin(), now.end(), std::back_inserter(vectors),
+                   [](const Vector3& v) { return !(v == Vector3{}); });
+      for (Vector3& v : now) v = std::pow(scale, lengths) * v;
+      if (level == many) {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+          if (!(now[i] == Vector3{}) && length(now[i] - last[i]) > growth * length(now[i]))
+            vectors.push_back(now[i] - last[i]);
+        }
+      }
+      last = std::move(now);
+    }
+    patch = split(patch, static_cast<unsigned>(sector.centre));
+    if (grows) scale /= middle(decay->least);
+  }
+}
+
 // A direction that is on the side of each of some others, if the first one is hardly: towards the one that is farthest off, again and
 // again.
 Vector3 seen_by_all(const Vector3& first, const std::vector<Vector3>& normals) {
   constexpr double enough = 0.3;
-  constexpr int steps = 40;
+  constexpr int steps = 400;
   Vector3 at = first;
   for (int i = 0; i < steps; ++i) {
     double least = INFINITY;
@@ -259,13 +329,27 @@ Vector3 seen_by_all(const Vector3& first, const std::vector<Vector3>& normals) {
   return normalized(at);
 }
 
+void add_further_normals(const StarSector& sector, std::vector<Vector3>& normals) {
+  constexpr double certain = 1e-6;
+  add_of_rings(
+      sector, 2,
+      [&](const Patch& patch) {
+        const auto [a, b] = spokes_of({&patch, sector.centre});
+        const Vector3 normal = cross(a, b);
+        return std::vector{length(normal) > certain * length(a) * length(b) ? normal : Vector3{}};
+      },
+      normals);
+}
+
 class StarCheck {
  public:
-  StarCheck(std::span<const StarSector> sectors, bool closed) : sectors_(sectors), closed_(closed) {}
+  // Seen along a direction that suits this level, or all further ones, too.
+  StarCheck(std::span<const StarSector> sectors, bool closed, bool further)
+      : sectors_(sectors), closed_(closed), further_(further) {}
 
   [[nodiscard]] bool certainly_injective() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
-    if (!make_frame()) return false;
+    if (!make_frame() || (further_ && spike_)) return false;
     for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_, frame_off_));
     for (std::size_t s = 0; s < flat_.size(); ++s) {
       const auto centre = static_cast<unsigned>(sectors_[s].centre);
@@ -283,25 +367,30 @@ class StarCheck {
     double error;
   };
   [[nodiscard]] std::optional<Spike> spike() const {
-    const auto centre = static_cast<unsigned>(sectors_[0].centre);
-    Patch patch = *sectors_[0].patch;
-    const CornerFan& fan = patch.kind->corner(patch.to_kind(centre));
-    if (!closed_ || !fan.closed || !fan.sharp || fan.odd) return std::nullopt;
-    patch.path = {};
-    const RingDecay* tip = nullptr;
-    for (unsigned levels = corner_levels; (tip = decay_of(*patch.kind)) == nullptr; --levels) {
-      if (levels == 0 || patch.kind->polynomial()) return std::nullopt;
-      patch = split(patch, centre);
+    if (!closed_) return std::nullopt;
+    std::optional<Patch> first;
+    std::set<std::size_t> places;  // in a fan from one edge around to itself
+    for (const StarSector& sector : sectors_) {
+      std::optional<Patch> patch = at_spike(sector);
+      if (!patch) return std::nullopt;
+      const CornerFan& fan = patch->kind->corner(patch->to_kind(sector.centre));
+      if (!first) first = std::move(patch);
+      const CornerFan& of_first = first->kind->corner(first->to_kind(sectors_[0].centre));
+      if (fan.odd != of_first.odd || fan.faces() != of_first.faces()) return std::nullopt;
+      places.insert(fan.before);
     }
-    if (!tip->spike || corner_of(*tip, patch) != centre) return std::nullopt;
+    const CornerFan& fan = first->kind->corner(first->to_kind(sectors_[0].centre));
+    if (fan.odd && places.size() != fan.faces()) return std::nullopt;
+    const RingDecay& tip = *decay_across_spike(*first->kind);
     Spike spike{{}, 0};
     double sum = 0;
-    for (std::size_t i = 0; i < patch.points.size(); ++i) {
-      spike.along = spike.along + tip->largest_row[i] * patch.points[i];
-      sum += std::fabs(tip->largest_row[i]);
+    for (std::size_t i = 0; i < first->points.size(); ++i) {
+      spike.along = spike.along + tip.spike_row[i] * first->points[i];
+      sum += std::fabs(tip.spike_row[i]);
     }
-    spike.error = enlarged((sum + tip->row_error) * patch.error +
-                           2 * (tip->row_error + gamma_bound(patch.points.size() + 4) * sum) * patch.largest);
+    spike.error =
+        enlarged((sum + tip.row_error) * first->error +
+                 2 * (tip.row_error + gamma_bound(first->points.size() + 4) * sum) * first->largest);
     return spike;
   }
 
@@ -315,6 +404,7 @@ class StarCheck {
       spokes_.push_back(b);
       normals.push_back(cross(a, b));
       normal = normal + normals.back();
+      if (further_) add_further_normals(sector, normals);
     }
     if (closed_) spokes_.pop_back();
     const std::optional<Spike> tip = spike();
@@ -426,7 +516,7 @@ class StarCheck {
   }
 
   std::span<const StarSector> sectors_;
-  bool closed_;
+  bool closed_, further_;
   std::vector<Vector3> spokes_;  // closed: one a sector; open: one more
   bool spike_ = false;
   Frame frame_;
@@ -442,41 +532,79 @@ std::optional<std::size_t> point_in_place(const StarSector& sector) {
   return row.sources[0];
 }
 
+// Directions from the vertex to control points, or to corners of pieces nearer and nearer to it.
+void add_directions(const StarSector& sector, double sign, bool by_rings, std::vector<Vector3>& directions) {
+  if (!by_rings) {
+    const std::vector<Vector3>& points = sector.patch->points;
+    const std::size_t vertex = *point_in_place(sector);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i != vertex) directions.push_back(sign * (points[i] - points[vertex]));
+    }
+    return;
+  }
+  add_of_rings(
+      sector, 1,
+      [&](const Patch& patch) {
+        std::vector<Vector3> all;
+        const Vector3 vertex = limit_corners(patch)[sector.centre];
+        for (unsigned child = 0; child < 4; ++child) {
+          if (child == sector.centre) continue;
+          for (const Vector3& p : limit_corners(split(patch, child))) all.push_back(sign * (p - vertex));
+        }
+        return all;
+      },
+      directions);
+}
+
+// Is a sector, but for its vertex, on this side of a plane through that? Points are means of control points.
+bool is_on_side(const StarSector& sector, const Vector3& across, bool by_rings) {
+  const Patch& patch = *sector.patch;
+  const std::size_t vertex = *point_in_place(sector);
+  const double size = std::fabs(across.x) + std::fabs(across.y) + std::fabs(across.z);
+  Patch values;
+  values.kind = patch.kind;
+  values.first = patch.first;
+  double far = 0, least = INFINITY;
+  for (std::size_t i = 0; i < patch.points.size(); ++i) {
+    const Vector3 d = patch.points[i] - patch.points[vertex];
+    values.points.push_back({dot(across, d), 0, 0});
+    values.largest = std::max(values.largest, std::fabs(values.points.back().x));
+    far = std::max(far, max_abs(d));
+    if (i != vertex) least = std::min(least, values.points.back().x);
+  }
+  values.error =
+      enlarged(size * (2 * patch.error + (unit_roundoff + gamma_bound(4)) * far)) + underflow_error;
+  return by_rings ? certainly_positive_but_at_corner(values, static_cast<unsigned>(sector.centre))
+                  : least > values.error;
+}
+
 }  // namespace
 
 bool stays_in_place(const StarSector& sector) { return point_in_place(sector).has_value(); }
 
-// A plane through the vertex with all other control points of the one on its one side, and of the other on the other.
+// A plane through the vertex with the one on its one side, and the other on the other: by all their control points, or ring by ring.
 bool certainly_meet_only_at_vertex(const StarSector& a, const StarSector& b) {
-  struct Direction {
-    Vector3 value;
-    double error;
-  };
-  std::vector<Direction> all;
-  std::vector<Vector3> values;
-  Vector3 sum;
-  for (const auto& [sector, sign] : {std::pair{&a, 1.0}, std::pair{&b, -1.0}}) {
-    const std::optional<std::size_t> vertex = point_in_place(*sector);
-    if (!vertex) return false;
-    const std::vector<Vector3>& points = sector->patch->points;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i == *vertex) continue;
-      const Vector3 d = sign * (points[i] - points[*vertex]);
-      all.push_back({d, enlarged(2 * sector->patch->error + unit_roundoff * max_abs(d))});
-      values.push_back(d);
-      sum = sum + normalized(d);
-    }
+  if (!stays_in_place(a) || !stays_in_place(b)) return false;
+  for (const bool by_rings : {false, true}) {
+    std::vector<Vector3> directions;
+    add_directions(a, 1, by_rings, directions);
+    add_directions(b, -1, by_rings, directions);
+    Vector3 sum;
+    for (const Vector3& d : directions) sum = sum + normalized(d);
+    const Vector3 across = seen_by_all(sum, directions);
+    if (is_on_side(a, across, by_rings) && is_on_side(b, -across, by_rings)) return true;
   }
-  const Vector3 across = seen_by_all(sum, values);
-  return std::all_of(all.begin(), all.end(), [&](const Direction& d) {
-    const double size = std::fabs(across.x) + std::fabs(across.y) + std::fabs(across.z);
-    return dot(across, d.value) >
-           enlarged(size * (d.error + gamma_bound(4) * max_abs(d.value))) + underflow_error;
-  });
+  return false;
 }
 
 bool certainly_injective(std::span<const StarSector> sectors, bool closed) {
-  return StarCheck(sectors, closed).certainly_injective();
+  const auto grows = [](const StarSector& sector) {
+    const std::optional<Patch> tip = at_tip(sector, decay_of);
+    return tip && grows_along_one_direction(*decay_of(*tip->kind));
+  };
+  return StarCheck(sectors, closed, false).certainly_injective() ||
+         (std::any_of(sectors.begin(), sectors.end(), grows) &&
+          StarCheck(sectors, closed, true).certainly_injective());
 }
 
 }  // namespace snug
