@@ -47,7 +47,7 @@ USERS = ("apps/snug", "python", "web", "examples")
 QUESTIONS = ("tests/query", "tests/sound", "tests/testing")
 WHITE_BOX = {"tests/query/hull_problems_test.cpp", "tests/query/local_tessellation_test.cpp", "tests/query/local_tolerances_test.cpp", "tests/query/moving_body_test.cpp",
              "tests/query/pair_queries_test.cpp",
-             "tests/query/piece_quadratic_test.cpp", "tests/query/swept_motion_test.cpp", "tests/query/trajectory_test.cpp",
+             "tests/query/piece_quadratic_test.cpp", "tests/query/plane_cover_test.cpp", "tests/query/swept_motion_test.cpp", "tests/query/trajectory_test.cpp",
              "tests/query/triangle_complex_test.cpp", "tests/sound/lazy_trees_test.cpp", "tests/sound/schemes_collide_test.cpp",
              "tests/sound/self_near_test.cpp"}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.

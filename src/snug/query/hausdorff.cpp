@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <snug/geometry/rounding.h>
+#include <snug/query/plane_cover.h>
 #include <support/parallel.h>
 
 namespace snug {
@@ -38,6 +38,9 @@ struct Comparison {
 
 // Gaps that rounding leaves at each cut sum to less than distance_rounding.
 constexpr unsigned max_depth = 120;
+
+// Of the precision: heights between pieces that lie on one plane.
+constexpr double cover_share = 0.125;
 
 // Parts that are compared before what is left goes back to be handed out again.
 constexpr std::size_t chunk_work = 4096;
@@ -377,6 +380,27 @@ class CornerFeet {
   std::vector<QuadraticFoot> feet_;
 };
 
+// How far pieces that lie on flat ones of the other set are from it, at most; of others nothing. Those whose corners are near it are asked.
+std::vector<std::optional<double>> covered_pieces(const PieceSet& set, std::span<const std::uint32_t> pieces,
+                                                  const PieceSet& other, const CornerFeet& corners,
+                                                  double most, int threads, const WorkMonitor& monitor) {
+  std::vector<std::optional<double>> covered(pieces.size());
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (std::max({corners(i, 0).distance, corners(i, 1).distance, corners(i, 2).distance}) <= most)
+      near.push_back(i);
+  }
+  if (near.empty()) return covered;
+  const PlaneCover cover(other, most);
+  parallel_for(near.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k % 64 == 0) monitor.checkpoint();
+      covered[near[k]] = cover.distance_of(set[pieces[near[k]]]);
+    }
+  });
+  return covered;
+}
+
 // Is a distance greater than the threshold, in mesh units too?
 bool is_beyond(double lower, const HausdorffOptions& options) {
   return options.threshold && lower > (1 + 16 * unit_roundoff) * *options.threshold;
@@ -437,8 +461,16 @@ std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     far[i] = std::max({corners(i, 0).distance, corners(i, 1).distance, corners(i, 2).distance});
   }
-  std::vector<std::uint32_t> order(pieces.size());
-  std::iota(order.begin(), order.end(), 0u);
+  const std::vector<std::optional<double>> covered =
+      covered_pieces(set, pieces, other, corners, cover_share * options.precision, options.threads, monitor);
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+    if (covered[i]) {
+      farthest.upper = std::max(farthest.upper, *covered[i]);
+    } else {
+      order.push_back(i);
+    }
+  }
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t x, std::uint32_t y) { return far[x] != far[y] ? far[x] > far[y] : x < y; });
 
