@@ -120,7 +120,8 @@ class PageRobot {
       std::vector<std::vector<double>> positions;
       const auto count = path["length"].as<std::size_t>();
       for (std::size_t i = 0; i < count; ++i) positions.push_back(positions_of(path[i]));
-      LinkContactsOptions how{.joined = option<bool>(options, "joined").value_or(false)};
+      LinkContactsOptions how{.joined = option<bool>(options, "joined").value_or(false),
+                              .group = option<std::string>(options, "group").value_or("")};
       if (const auto length = option<double>(options, "tolerance"))
         how.tolerance = [=](double) { return *length; };
       val results = val::array();

@@ -157,7 +157,8 @@ class RobotRun {
     const WorkMonitor monitor = bar.monitor();
     const auto tolerance = [&](double size) { return tolerance_.in_mesh_units(size, 1.0); };
     return first_contacts(
-        robot_, surfaces_, positions_, {.tolerance = tolerance, .joined = options_.joined, .group = options_.group},
+        robot_, surfaces_, positions_,
+        {.tolerance = tolerance, .joined = options_.joined, .group = options_.group},
         {.threads = options_.threads, .monitor = &monitor, .max_splits = options_.max_splits});
   }
 

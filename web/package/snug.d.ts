@@ -527,9 +527,10 @@ export interface Robot {
   poses(positions?: Positions): Record<string, number[]>;
   /**
    * Which links meet along a path of the joints, at constant speeds from each list of positions to the next? One answer for each two
-   * shapes that can move against each other; joined: also of links that a joint joins. tolerance: 0.1 % of the larger mesh.
+   * shapes that can move against each other; joined: also of links that a joint joins; group: only with a
+   * link of this group. tolerance: 0.1 % of the larger mesh.
    */
-  firstContacts(path: readonly Positions[], options?: { tolerance?: number; joined?: boolean } & CallOptions): LinkContact[];
+  firstContacts(path: readonly Positions[], options?: { tolerance?: number; joined?: boolean; group?: string } & CallOptions): LinkContact[];
   delete(): void;
 }
 

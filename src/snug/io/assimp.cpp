@@ -45,9 +45,9 @@ class AssimpReader {
   PlacedMeshes read(const Notes& notes) {
     if (scene_.mRootNode != nullptr) visit_nodes();
     if (placed_.parts.empty()) fail_in_file(name_, "Assimp found no faces in the file");
-    const bool triangles = std::ranges::all_of(placed_.meshes, [](const ControlMesh& mesh) {
-      return 3 * mesh.face_count() == mesh.face_vertices.size();
-    });
+    const bool triangles = std::all_of(
+        placed_.meshes.begin(), placed_.meshes.end(),
+        [](const ControlMesh& mesh) { return 3 * mesh.face_count() == mesh.face_vertices.size(); });
     for (ControlMesh& mesh : placed_.meshes) {
       if (triangles) mesh.tags.scheme = Scheme::flat;
       mesh.metres_per_unit = metres_per_unit();
@@ -174,8 +174,8 @@ PlacedMeshes read_assimp(std::string_view bytes, const std::string& ending, cons
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.substr(1).c_str());
   if (scene == nullptr) {
     std::string why = importer.GetErrorString();
-    std::ranges::replace_if(
-        why, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    std::replace_if(
+        why.begin(), why.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     fail_in_file(name, "Assimp cannot read it: " + why);
   }
   return AssimpReader(*scene, name, bytes.size(), ending).read(notes);
