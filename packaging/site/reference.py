@@ -36,7 +36,8 @@ class Reference:
         members = [member for member in compound.iter("memberdef") if member.get("prot") == "public"]
         if compound.get("kind") == "namespace":
             for member in members:
-                self.add(member, plain(member.find("name")), [], "member")
+                if "<" not in plain(member.find("name")):  # specializations, whose text is that of the template
+                    self.add(member, plain(member.find("name")), [], "member")
         else:
             name = plain(compound.find("compoundname")).removeprefix("snug::")
             self.add(compound, name, members, "compound")
