@@ -50,7 +50,8 @@ std::string text_in_help(const Option& option) {
   std::string text = option.help;
   if (!option.choices.empty()) text += ". One of " + listed(option.choices, "or");
   const std::string value = option.text();
-  return value.empty() ? text : text + " (default " + value + ")";
+  const bool stands_for_none = option.range && option.range->first > 0 && value == "0";
+  return value.empty() || stands_for_none ? text : text + " (default " + value + ")";
 }
 
 constexpr std::array topics{

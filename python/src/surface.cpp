@@ -610,15 +610,16 @@ void add_surface(py::module_& module) {
             const SurfaceOptions options = options_of(state[1], state[2], state[3], state[4].cast<bool>());
             return PySurface(mesh_of_state(state[0]), options);
           }));
-  module.def("read", &read, arg("path"), py::kw_only(), arg("scheme") = "auto", arg("boundary") = none,
-             arg("sharp") = none, arg("weld") = none, arg("bounds") = "rows", arg("tight") = false,
-             arg("threads") = 0, arg("progress") = none,
-             "The limit surface of a mesh file: OBJ, OFF, PLY, STL, USD (.usda) or glTF (.glb). Keywords are "
-             "those of Surface\n"
-             "and come before the file's own rules. STL and glTF are flat unless scheme or sharp is given. "
-             "Notes of the reader, and\n"
-             "that triangles of another file are smoothed, become MeshWarnings.\n\n"
-             "Raises FileError (.filename, .line), MeshError, ValueError.");
+  module.def(
+      "read", &read, arg("path"), py::kw_only(), arg("scheme") = "auto", arg("boundary") = none,
+      arg("sharp") = none, arg("weld") = none, arg("bounds") = "rows", arg("tight") = false,
+      arg("threads") = 0, arg("progress") = none,
+      "The limit surface of a mesh file: OBJ, OFF, PLY, STL, USD (.usda), glTF or 3MF. Keywords are "
+      "those of Surface\n"
+      "and come before the file's own rules. STL, glTF and 3MF are flat unless scheme or sharp is given. "
+      "Notes of the reader, and\n"
+      "that triangles of another file are smoothed, become MeshWarnings.\n\n"
+      "Raises FileError (.filename, .line), MeshError, ValueError.");
   module.def(
       "read_assembly", &read_parts, arg("path"), py::kw_only(), arg("scheme") = "auto",
       arg("boundary") = none, arg("sharp") = none, arg("weld") = none, arg("bounds") = "rows",

@@ -137,8 +137,7 @@ TEST(urdf, primitives_are_exact_or_outside) {
   EXPECT_LT(arm.outward[1], 4e-3);
   EXPECT_GT(arm.outward[2], 1e-4);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_TRUE(lines[0].starts_with("dir/r.urdf: 2 cylinders and spheres are inside of polyhedra"))
-      << lines[0];
+  EXPECT_TRUE(lines[0].starts_with("dir/r.urdf: cylinders and spheres (2) are inside polyhedra")) << lines[0];
   options.visual = true;
   EXPECT_TRUE(parse(link("a"), options).links[0].shapes.empty());
 }

@@ -633,7 +633,7 @@ function partCard(side) {
   file.textContent = "Open a file\u2026";
   const input = document.createElement("input");
   input.type = "file";
-  input.accept = ".obj,.off,.ply,.stl,.usda,.glb";
+  input.accept = ".obj,.off,.ply,.stl,.usda,.glb,.gltf,.3mf";
   input.id = `file-${"ab"[side]}`;
   input.onchange = () => input.files[0] && openFile(input.files[0], side);
   file.append(input);

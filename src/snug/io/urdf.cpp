@@ -408,9 +408,10 @@ class RobotReader {
 
   void write_notes() const {
     if (!options_.notes || outer_ == 0) return;
-    options_.notes(name_ + ": " + std::to_string(outer_) +
-                   " cylinders and spheres are inside of polyhedra that go beyond them by at most " +
-                   text_at_most(*std::max_element(robot_.outward.begin(), robot_.outward.end()), true));
+    options_.notes(name_ + ": " + "cylinders and spheres (" + std::to_string(outer_) +
+                   ") are inside polyhedra that go beyond them by at most " +
+                   text_at_most(*std::max_element(robot_.outward.begin(), robot_.outward.end()), true) +
+                   " m");
   }
 
   const std::string& name_;
