@@ -267,14 +267,18 @@ std::optional<RowsOfSpike> rows_of_spike(const Kind& kind, std::size_t corner, c
   return RowsOfSpike{std::move(result), std::move(*largest)};
 }
 
+constexpr double apart = 1e-6;
+
+// 1 is that of constants, which say nothing of directions.
+bool decays(const Interval& eigenvalue) { return eigenvalue.upper < 1 - apart; }
+
 // Where one edge of a fan is sharp the other ones' points take part in modes that are 0 on it: those of a smooth fan of twice as many
 // faces. Other eigenvalues are 1/2, the edge's own, and at most 1/4. The largest one is alone and far from all others.
 bool is_largest(const Kind& kind, std::size_t corner, const Interval& eigenvalue) {
-  constexpr double apart = 1e-6;
   CornerFan smooth = kind.corner(corner);
   smooth.closed = true;
   smooth.sharp = smooth.odd = false;
-  return eigenvalue.lower > std::max(0.5, kind.rules().shrink_factor(smooth)) + apart;
+  return eigenvalue.lower > std::max(0.5, kind.rules().shrink_factor(smooth)) + apart && decays(eigenvalue);
 }
 
 std::optional<LastingRows> rows_across_spike(const Kind& kind, std::size_t corner, const Stencils& step) {
@@ -284,7 +288,7 @@ std::optional<LastingRows> rows_across_spike(const Kind& kind, std::size_t corne
     return rows;
   }
   std::optional<RowsOfSpike> found = rows_of_spike(kind, corner, step);
-  if (!found) return std::nullopt;
+  if (!found || !decays(found->largest.ratio * found->rows.least)) return std::nullopt;
   found->rows.spike = std::move(found->largest);
   return std::move(found->rows);
 }
