@@ -309,7 +309,7 @@ TEST(program, table_5_3_counts_the_same_whatever_the_threads) {
 TEST(program, prints_a_table_for_people) {
   const Outcome rates = run_research({"rates", "--nets", "1", "--levels", "4"});
   EXPECT_EQ(rates.status, 0) << rates.err;
-  EXPECT_EQ(std::count(rates.out.begin(), rates.out.end(), '\n'), 2 + 12 * 3);
+  EXPECT_EQ(std::count(rates.out.begin(), rates.out.end(), '\n'), 3 + 12 * 3);
   const Outcome tightness = run_research({"tightness", "--nets", "1", "--samples", "2"});
   EXPECT_EQ(tightness.status, 0) << tightness.err;
   EXPECT_EQ(std::count(tightness.out.begin(), tightness.out.end(), '\n'), 2 + 3 * 12 * 3);
