@@ -36,7 +36,7 @@ LIBRARIES = {
     "independence": ("flint/", "gmpxx.h"),
     "io": ("nlohmann/", "zlib.h", "assimp/"),
 }
-POSIX = ("fcntl.h", "unistd.h", "sys/", "io.h", "windows.h")
+POSIX = ("fcntl.h", "unistd.h", "sys/", "io.h", "malloc.h", "windows.h")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check,
 # adapters, which is installed and so includes what is installed, and the renderer, a user like others.
 INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapters": set(ORDER) - set(SEPARATE),

@@ -12,6 +12,9 @@ class Blocks {
  public:
   Blocks() = default;
   explicit Blocks(std::size_t size) { resize(size); }
+  Blocks(const std::vector<T>& elements) {  // NOLINT: the same elements
+    for (const T& element : elements) push_back(element);
+  }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] T& operator[](std::size_t i) { return blocks_[i / block_size][i % block_size]; }

@@ -143,6 +143,8 @@ std::size_t memory_of_machine() {
   return ::GlobalMemoryStatusEx(&status) ? static_cast<std::size_t>(status.ullTotalPhys) : SIZE_MAX;
 }
 
+void return_free_memory() noexcept {}
+
 }  // namespace snug::system_files
 
 #endif

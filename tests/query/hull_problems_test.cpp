@@ -70,8 +70,19 @@ TEST(hull_problems, of_spoiled_hulls_are_found) {
   EXPECT_EQ(faults_of(surface, swapped, tolerance), std::set{HullFault::not_around});
   Hulls equal = good;
   equal.inner = equal.outer;
-  EXPECT_TRUE(faults_of(surface, equal, tolerance).contains(HullFault::meets_other));
+  EXPECT_EQ(faults_of(surface, equal, tolerance), std::set{HullFault::not_around});
   EXPECT_TRUE(faults_of(surface, good, good.outer->gap / 20).contains(HullFault::no_position));
+}
+
+// Those of an open surface are sheets, which may meet on its border's outer side, where it is not between them.
+TEST(hull_problems, of_sheets_that_meet_each_other_are_found) {
+  const Surface surface(testing::control_mesh(meshes::quad_grid(3, 3)));
+  const double tolerance = 0.05;
+  Hulls hulls = hull(surface, {.error = tolerance});
+  ASSERT_EQ(hulls.outcome, Outcome::complete);
+  EXPECT_TRUE(faults_of(surface, hulls, tolerance).empty());
+  hulls.inner = hulls.outer;
+  EXPECT_EQ(faults_of(surface, hulls, tolerance), std::set{HullFault::meets_other});
 }
 
 // A part of a hull that lies on the other side of the surface is found out although the surface is around and inside.

@@ -76,7 +76,7 @@ TEST(piece_set, are_the_surface_up_to_their_errors) {
 }
 
 TEST(piece_set, of_triangles_stays_as_it_is) {
-  PieceSet set({flat_quadratic({Point3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})});
+  PieceSet set(std::vector{flat_quadratic({Point3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})});
   const std::vector<std::uint8_t> which{1};
   EXPECT_TRUE(set.refine(which, 0, 1).empty());
   EXPECT_EQ(set.size(), 1u);

@@ -53,8 +53,7 @@ ComparedSet compared(const LimitSurface& surface, PowerOfTwo scale, double error
 }
 
 ComparedSet compared(std::span<const Triangle> triangles, PowerOfTwo scale, const Run& run) {
-  std::vector<QuadraticTriangle> flat;
-  flat.reserve(triangles.size());
+  Blocks<QuadraticTriangle> flat;
   for (const Triangle& t : triangles) {
     flat.push_back(flat_quadratic({scale.apply(t[0]), scale.apply(t[1]), scale.apply(t[2])}));
   }

@@ -80,7 +80,7 @@ Box3 box_around(std::span<const PlacedSurface> parts) {
 // Nothing if these would be more than `most`.
 std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, PowerOfTwo scale,
                                           double error, std::uint64_t most, const Run& run) {
-  std::vector<QuadraticTriangle> all;
+  Blocks<QuadraticTriangle> all;
   PlacedPieces result{.set = {}, .scale = scale, .members = {}};
   for (const PlacedSurface& part : parts) {
     const LimitSurface& surface = part.surface().data()->bvh().surface();

@@ -607,23 +607,27 @@ class Verification {
         hulls_(hulls),
         monitor_(stop_only(run)),
         run_{.threads = run.threads, .monitor = &monitor_},
-        largest_count_(largest_count(hulls)),
-        own_(model_, max_kept()) {}
+        largest_count_(largest_count(hulls)) {}
 
   std::vector<HullProblem> run() {
-    std::array<std::unique_ptr<FacetSurface>, 2> sides;
     if (hulls_.closed) own_points_ = points_of(model_);
+    std::array<bool, 2> whole{};
     for (const bool inner : {true, false}) {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
       if (!hull || !is_whole(*hull, inner)) continue;
-      sides[inner] =
-          std::make_unique<FacetSurface>(*hull, max_kept(), model_.surface().shared_library(), monitor_);
-      if (hulls_.closed) points_of_hull_ = points_of(sides[inner]->model());
-      apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
+      whole[inner] = true;
       near(*hull, inner);
-      if (hulls_.closed) around(*sides[inner], inner);
+      FacetSurface facets = surface_of(*hull);
+      PieceCache own(model_, max_kept());
+      if (hulls_.closed) points_of_hull_ = points_of(facets.model());
+      apart({model_, own, {}}, facets.placed(), HullFault::meets_surface, inner);
+      if (hulls_.closed) around(own, facets.workspace(), inner);
     }
-    if (sides[0] && sides[1]) apart(sides[1]->placed(), sides[0]->placed(), HullFault::meets_other, true);
+    // Those of a closed surface lie on different sides of it.
+    if (whole[0] && whole[1] && !hulls_.closed) {
+      FacetSurface inner = surface_of(*hulls_.inner), outer = surface_of(*hulls_.outer);
+      apart(inner.placed(), outer.placed(), HullFault::meets_other, true);
+    }
     return std::move(problems_);
   }
 
@@ -637,6 +641,9 @@ class Verification {
   }
   [[nodiscard]] std::uint64_t max_kept() const {
     return splits_kept_beside + splits_kept_a_triangle * largest_count_;
+  }
+  [[nodiscard]] FacetSurface surface_of(const Hull& hull) const {
+    return {hull, max_kept(), model_.surface().shared_library(), monitor_};
   }
   // A limit point of each component.
   struct Member {
@@ -704,10 +711,10 @@ class Verification {
     }
   }
   // One lies in the solid of the other with all its components, and none of these in the solid of the one.
-  void around(FacetSurface& hull, bool inner) {
+  void around(PieceCache& own, PieceCache& hull, bool inner) {
     for (const bool of_hull : {false, true}) {
       for (const auto& [position, owner] : of_hull ? points_of_hull_ : own_points_) {
-        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), position, run_);
+        const std::optional<bool> inside = contains(of_hull ? own : hull, position, run_);
         if (inside == (of_hull == inner)) continue;
         blame(HullFault::not_around, inner, position,
               of_hull ? (inner ? hulls_.inner : hulls_.outer)->owners[owner] : owner);
@@ -722,7 +729,6 @@ class Verification {
   WorkMonitor monitor_;
   Run run_;                      // with this monitor
   std::uint64_t largest_count_;  // of triangles of a hull
-  PieceCache own_;
   std::vector<Member> own_points_, points_of_hull_;
   double certain_gap_ = 0;  // mesh units
   std::vector<HullProblem> problems_;

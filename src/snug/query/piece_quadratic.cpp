@@ -10,31 +10,52 @@ namespace {
 // Squares, products and sums lose less than this by underflow.
 constexpr double tiny = 0x1p-500;
 
+Vector3 doubled(const std::array<float, 3>& x) {
+  return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
+}
+
 }  // namespace
 
 PieceQuadratic::PieceQuadratic(const QuadraticTriangle& near, const PiecePath& path)
-    : path_(path), origin_(near.corners[0]), error_(near.error) {
+    : first_(to_face(path, {0, 0})),
+      origin_(near.corners[0]),
+      scale_(static_cast<float>(path.turned() ? -path.scale() : path.scale())) {
   const auto from = [&](const Point3& p) { return p - origin_; };
   const Vector3 corner_u = from(near.corners[1]), corner_v = from(near.corners[2]),
                 middle_u = from(near.middles[0]), middle_uv = from(near.middles[1]),
                 middle_v = from(near.middles[2]);
   u_ = 2.0 * middle_u;
   v_ = 2.0 * middle_v;
-  uu_ = corner_u - 2.0 * middle_u;
-  vv_ = corner_v - 2.0 * middle_v;
-  uv_ = 2.0 * (middle_uv - middle_u - middle_v);
-  // Roundings of the coefficients are those of their terms.
-  size_ = max_abs(corner_u) + max_abs(corner_v) +
-          8 * (max_abs(middle_u) + max_abs(middle_v) + max_abs(middle_uv));
+  // u^2 + u v + v^2 is at most 1.
+  double rounding = 0;
+  const auto single = [&](const Vector3& x) {
+    Single result;
+    for (std::size_t a = 0; a < 3; ++a) {
+      result[a] = static_cast<float>(x[a]);
+      rounding = std::max(rounding, std::fabs(static_cast<double>(result[a]) - x[a]));
+    }
+    return result;
+  };
+  uu_ = single(corner_u - 2.0 * middle_u);
+  vv_ = single(corner_v - 2.0 * middle_v);
+  uv_ = single(2.0 * (middle_uv - middle_u - middle_v));
+  error_ = float_up(enlarged(near.error + spatial_error(rounding)));
+}
+
+TriangleParameter PieceQuadratic::local(TriangleParameter p) const {
+  const auto scale = static_cast<double>(scale_);
+  return {scale * (p.u - first_.u), scale * (p.v - first_.v)};
 }
 
 Vector3 PieceQuadratic::from_origin(TriangleParameter p) const {
-  return p.u * (u_ + p.u * uu_ + p.v * uv_) + p.v * (v_ + p.v * vv_);
+  const Vector3 uu = doubled(uu_), uv = doubled(uv_), vv = doubled(vv_);
+  return p.u * (u_ + p.u * uu + p.v * uv) + p.v * (v_ + p.v * vv);
 }
 
 Vector3 PieceQuadratic::bow(TriangleParameter a, TriangleParameter b) const {
-  const double du = (b.u - a.u) * path_.scale(), dv = (b.v - a.v) * path_.scale();
-  return 0.25 * (du * du * uu_ + du * dv * uv_ + dv * dv * vv_);
+  const auto scale = static_cast<double>(scale_);
+  const double du = (b.u - a.u) * scale, dv = (b.v - a.v) * scale;
+  return 0.25 * (du * du * doubled(uu_) + du * dv * doubled(uv_) + dv * dv * doubled(vv_));
 }
 
 // The difference is a quadratic over the triangle with the Bezier points gap_k and, between them, the middle of
@@ -42,11 +63,13 @@ Vector3 PieceQuadratic::bow(TriangleParameter a, TriangleParameter b) const {
 Flatness PieceQuadratic::flatness(const FlatTriangle& triangle) const {
   Flatness result{};
   std::array<Vector3, 3> gap, middle;
-  double size = size_;
+  // Of the coefficients' terms, whose roundings are in them.
+  double size = 9 * (max_abs(u_) + max_abs(v_)) + max_abs(doubled(uu_)) + max_abs(doubled(vv_)) +
+                4 * max_abs(doubled(uv_));
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3 off = triangle.corner[k] - origin_;
     size = std::max(size, max_abs(off));
-    gap[k] = from_origin(path_.local(triangle.at[k])) - off;
+    gap[k] = from_origin(local(triangle.at[k])) - off;
   }
   double gap_sq = 0, sq = 0;
   Vector3 middles;
@@ -63,7 +86,7 @@ Flatness PieceQuadratic::flatness(const FlatTriangle& triangle) const {
   }
   result.corner_gap = std::sqrt(gap_sq);
   const double rounding = spatial_error(gamma_bound(64) * 4 * size) + tiny;
-  result.error = enlarged(std::sqrt(std::max(sq, gap_sq)) + error_ + rounding);
+  result.error = enlarged(std::sqrt(std::max(sq, gap_sq)) + error() + rounding);
   if (!(result.error < INFINITY)) result.error = INFINITY;
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include <snug/bounds/quadratic.h>
 #include <snug/patch/piece_path.h>
@@ -27,8 +28,8 @@ class PieceQuadratic {
   /// Requires:  finite points.
   PieceQuadratic(const QuadraticTriangle& near, const PiecePath& path);
 
-  [[nodiscard]] double error() const { return error_; }
-  [[nodiscard]] const PiecePath& path() const { return path_; }
+  [[nodiscard]] double error() const { return static_cast<double>(error_); }
+  [[nodiscard]] unsigned level() const { return static_cast<unsigned>(std::ilogb(scale_)); }
   /// Upper bound of the distance of a flat triangle on this piece.
   ///
   /// Guarantee: Flatness::error, rounding included, for exactly these corners; it covers every point of the patch
@@ -40,12 +41,19 @@ class PieceQuadratic {
   [[nodiscard]] Vector3 bow(TriangleParameter a, TriangleParameter b) const;
 
  private:
+  using Single = std::array<float, 3>;
+  [[nodiscard]] TriangleParameter local(TriangleParameter p) const;
   [[nodiscard]] Vector3 from_origin(TriangleParameter local) const;
 
-  PiecePath path_;
+  // Millions are kept at once. The second order, which is what a triangle's error is made of, is single precision: its roundings
+  // are a millionth of the error.
+  TriangleParameter first_;  // corner 0 in its patch
   Point3 origin_;
-  Vector3 u_, v_, uu_, uv_, vv_;
-  double error_ = 0, size_ = 0;  // size_: sum of the largest coordinates of the vectors
+  Vector3 u_, v_;
+  Single uu_{}, uv_{}, vv_{};
+  float error_ = 0;  // from the polynomial as it is rounded
+  float scale_ =
+      1;  // from parameters of the patch to those of the piece: 2^level, less than 0 where it is turned
 };
 
 }  // namespace snug

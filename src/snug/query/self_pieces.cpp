@@ -17,14 +17,14 @@ std::vector<StarSector> sectors_of(PieceCache& pieces, const LevelStar& star) {
 
 PieceSet enclosures_of(const SurfaceBvh& model, std::span<const PieceName> pieces, int threads,
                        const WorkMonitor& monitor) {
-  std::vector<QuadraticTriangle> sets(pieces.size());
+  Blocks<QuadraticTriangle> sets(pieces.size());
   for_each_with_pieces(model, pieces.size(), threads, monitor, [&](PieceCache& kept, std::size_t i) {
     const OffsetTriangle& offset = kept.offset(pieces[i]);
     sets[i] = flat_quadratic(offset.base);
     sets[i].error = enlarged(sets[i].error + offset.radius);
   });
-  for (const QuadraticTriangle& set : sets) {
-    if (!std::isfinite(set.error)) {
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (!std::isfinite(sets[i].error)) {
       throw InputError(InputProblem::unrepresentable,
                        "a bound of a patch does not fit a double; move the mesh nearer to the origin");
     }

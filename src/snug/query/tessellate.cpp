@@ -21,6 +21,7 @@
 #include <support/error.h>
 #include <support/parallel.h>
 #include <support/run.h>
+#include <support/system_files.h>
 
 namespace snug {
 namespace {
@@ -40,6 +41,9 @@ constexpr std::uint64_t triangle_limit = std::uint64_t{1} << 29;
 
 // Triangles that are examined at once: each may take room for a quadratic.
 constexpr std::size_t batch_size = 8192;
+
+// Results of so many triangles have tens of megabytes.
+constexpr std::size_t large_count = 100'000;
 
 constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
 
@@ -72,8 +76,9 @@ struct Facet {
   static constexpr Index unknown = UINT32_MAX, coarse = UINT32_MAX - 1, thick = UINT32_MAX - 2;
   Index patch;
   Index quadratic = unknown;
-  double error = INFINITY;  // upper bound of its distance from the surface, either way
+  float bound = INFINITY;  // of its distance from the surface, either way
 
+  [[nodiscard]] double error() const { return static_cast<double>(bound); }
   [[nodiscard]] bool is_coarse() const { return quadratic == coarse || quadratic == thick; }
 };
 
@@ -366,22 +371,22 @@ void MeshRefinement::learn(Worker& worker, Index t, Index room) {
   }
   facet.quadratic = thick ? Facet::thick : Facet::coarse;
   const FlatTriangle triangle = flat(t);
-  double& error = facet.error;
-  error = near.error < INFINITY ? PieceQuadratic(near, path).flatness(triangle).error : INFINITY;
+  double error = near.error < INFINITY ? PieceQuadratic(near, path).flatness(triangle).error : INFINITY;
   // Where the quadratic itself is too far away there is nothing to be gained.
   if (error > tolerance(t) && !(error - 2 * near.error > tolerance(t))) {
     const ErrorUse use_here = whole ? ErrorUse{} : ErrorUse{.useless = tolerance(t)};
     error = std::min(error, distance_to_triangle(library, patch, worker.hull, triangle.corner, use_here));
   }
+  facet.bound = float_up(error);
 }
 
 void MeshRefinement::prove(Index t, bool mark) {
   Facet& facet = facets_[t];
   if (!facet.is_coarse()) {
     const Flatness flatness = quadratics_[facet.quadratic].flatness(flat(t));
-    facet.error = flatness.error;
-    if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
-  } else if (mark && (facet.quadratic == Facet::thick || facet.error > tolerance(t))) {
+    facet.bound = float_up(flatness.error);
+    if (mark && facet.error() > tolerance(t)) mark_bent(t, flatness);
+  } else if (mark && (facet.quadratic == Facet::thick || facet.error() > tolerance(t))) {
     if (path_of(places(t)).level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
     mark_sides(t);
   }
@@ -590,7 +595,7 @@ void MeshRefinement::find_errors() {
   limits_.whole_errors = true;
   std::vector<Index> unknown;
   for (Index t = 0; t < triangle_count(); ++t) {
-    if (facets_[t].error < INFINITY || !facets_[t].is_coarse()) continue;
+    if (facets_[t].bound < INFINITY || !facets_[t].is_coarse()) continue;
     facets_[t].quadratic = Facet::unknown;
     unknown.push_back(t);
   }
@@ -599,7 +604,7 @@ void MeshRefinement::find_errors() {
 
 double MeshRefinement::error_bound() const {
   double largest = 0;
-  for (std::size_t t = 0; t < facets_.size(); ++t) largest = std::max(largest, facets_[t].error);
+  for (std::size_t t = 0; t < facets_.size(); ++t) largest = std::max(largest, facets_[t].error());
   return unscaled_up(largest, back());
 }
 
@@ -608,8 +613,9 @@ void MeshRefinement::refuse_if_stuck() const {
   double largest = 0;
   for (Index t = 0; t < facets_.size(); ++t) {
     const Facet& facet = facets_[t];
-    const PiecePath path = facet.is_coarse() ? path_of(places(t)) : quadratics_[facet.quadratic].path();
-    if (path.level() >= deepest_level) largest = std::max(largest, facet.error);
+    const unsigned level =
+        facet.is_coarse() ? path_of(places(t)).level() : quadratics_[facet.quadratic].level();
+    if (level >= deepest_level) largest = std::max(largest, facet.error());
   }
   char text[160];
   std::snprintf(
@@ -631,7 +637,7 @@ void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>&
       });
 }
 
-// Memory that is needed no more is freed before the result is made: both are largest now.
+// Memory that is needed no more is given back before the result is made: both are largest now.
 Tessellation MeshRefinement::take_result(LocalTessellation* local) {
   Tessellation result;
   result.error_bound = error_bound();
@@ -639,6 +645,8 @@ Tessellation MeshRefinement::take_result(LocalTessellation* local) {
   const std::size_t count = triangle_count();
   quadratics_ = {};
   Blocks<std::array<Index, 3>> sites = complex_.take_sites();
+  const bool large = count >= large_count;
+  if (large) system_files::return_free_memory();
   // Patch by patch.
   std::vector<std::size_t> begins(surface_.patch_count() + 1, 0);
   for (std::size_t t = 0; t < count; ++t) ++begins[facets_[t].patch + 1];
@@ -658,7 +666,7 @@ Tessellation MeshRefinement::take_result(LocalTessellation* local) {
     result.triangles[place] = sites[t];
     result.owners[place] = surface_.place(patch).owner;
     if (local != nullptr) {
-      local->errors[place] = unscaled_up(facet.error, back());
+      local->errors[place] = unscaled_up(facet.error(), back());
       local->parts[place] = {patch, {at_[sites[t][0]], at_[sites[t][1]], at_[sites[t][2]]}};
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -668,6 +676,7 @@ Tessellation MeshRefinement::take_result(LocalTessellation* local) {
   }
   facets_ = {};
   sites = {};
+  if (large) system_files::return_free_memory();
   // Vertices in the order in which triangles name them, with the parameters of their first sites.
   std::vector<Index> first(complex_.vertex_count(), UINT32_MAX), number(first), patches;
   std::size_t used = 0;

@@ -443,8 +443,7 @@ void keep_outermost(ClosedMesh& mesh, const RollingBall* ball, const WorkMonitor
 
 RollingBall::RollingBall(ClosedMesh mesh, double how_far, int threads)
     : around(std::move(mesh)), reach(how_far) {
-  std::vector<QuadraticTriangle> all;
-  all.reserve(around.triangles.size());
+  Blocks<QuadraticTriangle> all;
   for (const auto& [a, b, c] : around.triangles) {
     all.push_back(flat_quadratic({around.points[a], around.points[b], around.points[c]}));
   }

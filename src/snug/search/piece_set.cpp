@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <snug/bvh/obb.h>
 #include <snug/geometry/rounding.h>
@@ -100,35 +101,33 @@ template <class Make>
 PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, int threads,
                                        const WorkMonitor& monitor, const Make& make) {
   Count counted(most);
-  constexpr std::size_t block = 64;
-  std::vector<Made> parts((count + block - 1) / block);
-  parallel_for(parts.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      monitor.checkpoint();
-      for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
-        if (counted.too_many()) return;
-        make(i, counted, parts[b]);
-        parts[b].origins.resize(parts[b].names.size(), static_cast<std::uint32_t>(i));
-      }
-    }
-  });
+  constexpr std::size_t block = 64, blocks_at_once = 64;
   Made all;
-  if (counted.too_many()) return all;
-  std::size_t sum = 0;
-  for (const Made& part : parts) sum += part.names.size();
-  all.quadratics.reserve(sum);
-  all.names.reserve(sum);
-  all.origins.reserve(sum);
-  for (Made& part : parts) {
-    all.quadratics.insert(all.quadratics.end(), part.quadratics.begin(), part.quadratics.end());
-    all.names.insert(all.names.end(), part.names.begin(), part.names.end());
-    all.origins.insert(all.origins.end(), part.origins.begin(), part.origins.end());
-    part = {};
+  std::vector<Made> parts(blocks_at_once);
+  for (std::size_t first = 0; first < count; first += blocks_at_once * block) {
+    parallel_for(std::min(blocks_at_once, (count - first + block - 1) / block), threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t b = begin; b < end; ++b) {
+                     monitor.checkpoint();
+                     const std::size_t from = first + b * block;
+                     for (std::size_t i = from; i < std::min(count, from + block); ++i) {
+                       if (counted.too_many()) return;
+                       make(i, counted, parts[b]);
+                       parts[b].origins.resize(parts[b].names.size(), static_cast<std::uint32_t>(i));
+                     }
+                   }
+                 });
+    if (counted.too_many()) return {};
+    for (Made& part : parts) {
+      for (std::size_t i = 0; i < part.names.size(); ++i) all.add(part.quadratics[i], part.names[i]);
+      all.origins.insert(all.origins.end(), part.origins.begin(), part.origins.end());
+      part = {};
+    }
   }
   return all;
 }
 
-PieceSet::PieceSet(std::vector<QuadraticTriangle> given)
+PieceSet::PieceSet(Blocks<QuadraticTriangle> given)
     : pieces_(std::make_shared<const Pieces>(Pieces{std::move(given), {}})) {}
 
 void PieceSet::take(Made&& made) {
@@ -173,7 +172,7 @@ std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which,
         [&](const QuadraticTriangle& q, const PieceName& part) { parts.add(in_units(q, units_), part); });
   });
   std::vector<std::uint32_t> origins = std::move(made.origins);
-  if (!made.names.empty()) take(std::move(made));
+  if (made.names.size() > 0) take(std::move(made));
   return origins;
 }
 
@@ -192,17 +191,18 @@ void PieceSet::prepare(int threads) {
   if (prepared()) return;
   std::vector<Point3> centres;
   centres.reserve(size());
-  for (const QuadraticTriangle& q : pieces_->quadratics) {
+  for (std::size_t i = 0; i < size(); ++i) {
     Vector3 sum;
-    for (const Point3& x : q.corners) sum = sum + (x - Point3{});
+    for (const Point3& x : (*this)[i].corners) sum = sum + (x - Point3{});
     centres.push_back(Point3{} + (1.0 / 3) * sum);
   }
   std::vector<WideNode> leaves((size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size);
   WideBvh nodes(centres, threads,
                 [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
-                  const std::size_t first = boxes.size();
-                  for (const std::uint32_t i : items) boxes.push_back(box_of((*this)[i]));
-                  leaves[leaf] = WideNode(std::span(boxes).subspan(first));
+                  std::array<Obb, WideBvh::leaf_size> of_leaf;
+                  for (std::size_t k = 0; k < items.size(); ++k) of_leaf[k] = box_of((*this)[items[k]]);
+                  leaves[leaf] = WideNode(std::span(of_leaf).first(items.size()));
+                  boxes.push_back(merge(std::span(of_leaf).first(items.size())));
                 });
   tree_ = std::make_shared<const Tree>(Tree{std::move(nodes), std::move(leaves)});
 }

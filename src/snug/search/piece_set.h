@@ -13,6 +13,7 @@
 #include <snug/evaluate.h>
 #include <snug/run.h>
 #include <snug/surface/piece_name.h>
+#include <support/blocks.h>
 #include <support/contract.h>
 
 namespace snug {
@@ -26,7 +27,7 @@ class PieceSet {
   PieceSet() = default;
   /// Sets that stay as they are.
   /// Requires:  coordinates at most about 2; finite errors.
-  explicit PieceSet(std::vector<QuadraticTriangle> given);
+  explicit PieceSet(Blocks<QuadraticTriangle> given);
   /// Pieces that together are a surface, each split until its error is at most `error`. Where rounding or the last level ends that,
   /// the error is larger. None if these would be more than `most`; memory stays below what so many take. Coordinates are
   /// the surface's scaled ones times `units`.
@@ -93,8 +94,8 @@ class PieceSet {
     std::vector<WideNode> leaves;  // boxes around the pieces of each leaf
   };
   struct Pieces {
-    std::vector<QuadraticTriangle> quadratics;
-    std::vector<PieceName> names;
+    Blocks<QuadraticTriangle> quadratics;
+    Blocks<PieceName> names;
   };
   struct Made;
   template <class Make>

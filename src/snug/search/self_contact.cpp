@@ -353,8 +353,7 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
   for (std::uint32_t t = 0; t < triangles.size(); ++t) members[fan_of[t]].push_back(t);
   std::vector<PieceSet> sets;
   for (const std::vector<std::uint32_t>& of_set : members) {
-    std::vector<QuadraticTriangle> facets;
-    facets.reserve(of_set.size());
+    Blocks<QuadraticTriangle> facets;
     for (const std::uint32_t t : of_set) facets.push_back(flat(t));
     sets.emplace_back(std::move(facets));
     if (sets.back().size() > 0) sets.back().prepare(threads);
