@@ -16,7 +16,7 @@ struct Points {
     y.push_back(b);
     z.push_back(c);
   }
-  [[nodiscard]] Plane plane(double cx, double cy) const { return lowest_plane_above(x, y, z, cx, cy); }
+  [[nodiscard]] Plane plane(double cx, double cy) const { return PlanesAbove(x, y, cx, cy).lowest(z); }
 };
 
 double largest_violation(const Points& points, const Plane& plane) {
@@ -48,7 +48,7 @@ double brute_force(const Points& p, double cx, double cy) {
   return best;
 }
 
-TEST(lowest_plane_above, is_as_low_as_the_best_of_all_triples) {
+TEST(planes_above, is_as_low_as_the_best_of_all_triples) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> normal;
@@ -70,7 +70,7 @@ TEST(lowest_plane_above, is_as_low_as_the_best_of_all_triples) {
   }
 }
 
-TEST(lowest_plane_above, is_finite_and_above_whatever_the_points) {
+TEST(planes_above, is_finite_and_above_whatever_the_points) {
   std::mt19937_64 random(32);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int trial = 0; trial < 300; ++trial) {
@@ -99,7 +99,7 @@ TEST(lowest_plane_above, is_finite_and_above_whatever_the_points) {
   }
 }
 
-TEST(lowest_plane_above, is_the_same_each_time) {
+TEST(planes_above, is_the_same_each_time) {
   Points points;
   std::mt19937_64 random(33);
   std::uniform_real_distribution<double> unit(0, 1);

@@ -1,10 +1,14 @@
 #include <snug/geometry/interval.h>
+#include <snug/geometry/rounding.h>
 
 #include <gtest/gtest.h>
 #include <mpfr.h>
 #include <testing/counts.h>
 
+#include <bit>
+#include <cfloat>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -37,6 +41,23 @@ class Exact {
 
 bool holds(const Interval& range, const Exact& x) {
   return mpfr_cmp_d(x.value_, range.lower) >= 0 && mpfr_cmp_d(x.value_, range.upper) <= 0;
+}
+
+TEST(rounding, neighbours_are_those_of_nextafter) {
+  const auto expect_equal = [](double x, double y) {
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(x), std::bit_cast<std::uint64_t>(y));
+  };
+  std::vector<double> all{0.0, 0x1p-1074, 0x1p-1022, std::nextafter(0x1p-1022, 0), 1, DBL_MAX, INFINITY};
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 10000; ++i) all.push_back(std::fabs(std::bit_cast<double>(random())));
+  for (const double size : all) {
+    for (const double x : {size, -size}) {
+      if (std::isnan(x)) continue;
+      expect_equal(rounded_up(x), std::nextafter(x, INFINITY));
+      expect_equal(rounded_down(x), std::nextafter(x, -INFINITY));
+    }
+  }
+  EXPECT_TRUE(std::isnan(rounded_up(NAN)) && std::isnan(rounded_down(NAN)));
 }
 
 TEST(interval, sines_cosines_and_roots_contain_the_exact_ones) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/linear_programme.h>
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
@@ -54,7 +55,10 @@ std::array<LayoutPoint, 3> triangle_around(const DomainPoints& points) {
 class PlaneFitter {
  public:
   PlaneFitter(const DomainPoints& points, const std::array<LayoutPoint, 3>& triangle, double value_error)
-      : points_(points), triangle_(triangle), value_error_(value_error) {
+      : triangle_(triangle),
+        planes_(points.x, points.y, (triangle[0][0] + triangle[1][0] + triangle[2][0]) / 3,
+                (triangle[0][1] + triangle[1][1] + triangle[2][1]) / 3),
+        value_error_(value_error) {
     const double width = triangle[1][0] - triangle[0][0], height = triangle[2][1] - triangle[0][1];
     SNUG_EXPECT(width > 0 && height > 0);
     weight_error_ = enlarged(points.error / std::min(width, height) + 8 * unit_roundoff);
@@ -66,16 +70,13 @@ class PlaneFitter {
 
   // A plane that is above the exact function, by its values at the corners of the triangle.
   [[nodiscard]] BoundTable::CornerValues above(std::span<const double> values) const {
-    const double centre_x = (triangle_[0][0] + triangle_[1][0] + triangle_[2][0]) / 3;
-    const double centre_y = (triangle_[0][1] + triangle_[1][1] + triangle_[2][1]) / 3;
-    const Plane plane = lowest_plane_above(points_.x, points_.y, values, centre_x, centre_y);
+    const Plane plane = planes_.lowest(values);
     BoundTable::CornerValues w;
     for (std::size_t k = 0; k < 3; ++k) w[k] = plane(triangle_[k][0], triangle_[k][1]);
     const double to_one = w[1] - w[0], to_two = w[2] - w[0];
-    double missing = -INFINITY;
-    for (std::size_t r = 0; r < values.size(); ++r) {
-      missing = std::max(missing, values[r] - (w[0] + one_[r] * to_one + two_[r] * to_two));
-    }
+    const double missing = kernels::heights({one_.data(), two_.data(), values.data(), values.size()},
+                                            {0, 0, w[0]}, {-to_one, -to_two, 1})
+                               .upper;
     const double size = std::fabs(w[0]) + std::fabs(w[1]) + std::fabs(w[2]);
     const double error = enlarged(value_error_ + weight_error_ * (std::fabs(to_one) + std::fabs(to_two)) +
                                   16 * unit_roundoff * (size + 1));
@@ -86,8 +87,8 @@ class PlaneFitter {
   }
 
  private:
-  const DomainPoints& points_;
   const std::array<LayoutPoint, 3>& triangle_;
+  PlanesAbove planes_;
   double value_error_, weight_error_ = 0;
   std::vector<double> one_, two_;  // barycentric weights of corners 1 and 2 of the triangle
 };

@@ -112,12 +112,13 @@ template <class Each>
 void for_each_bezier(const BezierRows& form, const CoveredEdges& covered, const ParameterTriangle& place,
                      const Each& each) {
   for (std::size_t part = 0; part < form.parts; ++part) {
-    const ParameterTriangle own = form.parts == 1 ? place : part_of(place, part);
+    const RaisedQuadratic quadratic(form.parts == 1 ? place : part_of(place, part),
+                                    std::max<std::size_t>(form.degree, 2));
     for (std::size_t j = 0; j <= form.degree; ++j) {
       for (std::size_t i = 0; i + j <= form.degree; ++i) {
         if (form.parts == 1 && on_covered_edge(form.degree, i, j, covered)) continue;
         each(part * bezier_count(form.degree) + bezier_index(form.degree, i, j), i, j,
-             form.degree < 2 ? QuadraticWeights{} : raised_quadratic(own, form.degree, i, j));
+             form.degree < 2 ? QuadraticWeights{} : quadratic.point(i, j));
       }
     }
   }
@@ -359,10 +360,9 @@ BoundingRows polynomial_rows(const Kind& kind) {
   }
   std::vector<QuadraticWeights> quadratic;
   for (std::size_t part = 0; part < form.parts; ++part) {
-    const ParameterTriangle place = form.parts == 1 ? whole_patch : part_of(whole_patch, part);
+    const RaisedQuadratic piece(form.parts == 1 ? whole_patch : part_of(whole_patch, part), form.degree);
     for (std::size_t j = 0; j <= form.degree; ++j) {
-      for (std::size_t i = 0; i + j <= form.degree; ++i)
-        quadratic.push_back(raised_quadratic(place, form.degree, i, j));
+      for (std::size_t i = 0; i + j <= form.degree; ++i) quadratic.push_back(piece.point(i, j));
     }
   }
   return polynomial_rows(width, weights, form.rows.max_error(), quadratic);

@@ -294,8 +294,9 @@ class RowWriter {
     const ParameterTriangle place{place_of(triangle[bezier_index(6, 0, 0)]),
                                   place_of(triangle[bezier_index(6, 6, 0)]),
                                   place_of(triangle[bezier_index(6, 0, 6)])};
+    const RaisedQuadratic quadratic(place, 6);
     for (std::size_t j = 0; j <= 6; ++j) {
-      for (std::size_t i = 0; i + j <= 6; ++i) quadratic_.push_back(raised_quadratic(place, 6, i, j));
+      for (std::size_t i = 0; i + j <= 6; ++i) quadratic_.push_back(quadratic.point(i, j));
     }
   }
   // The last index runs first.

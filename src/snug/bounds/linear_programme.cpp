@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include <snug/bounds/fit_kernels.h>
 #include <support/contract.h>
 
 namespace snug {
@@ -103,38 +105,60 @@ CentredPlane lowest_above(const std::vector<LinePoint>& points) {
   return plane;
 }
 
+// The point farthest above a plane, by some height; nothing if none is above it but for roundings.
+std::optional<std::size_t> farthest_above(const kernels::Coordinates& points, const Vector3& from,
+                                          const Slopes& slopes) {
+  constexpr std::size_t block = 64;
+  const Vector3 up{-slopes.x, -slopes.y, 1};
+  double most = negligible;
+  std::optional<std::size_t> highest;
+  for (std::size_t begin = 0; begin < points.count; begin += block) {
+    const kernels::Coordinates here = points.first(std::min(points.count, begin + block)).from(begin);
+    const double upper = kernels::heights(here, from, up).upper;
+    if (upper > most) most = upper, highest = begin;
+  }
+  if (!highest) return {};
+  std::size_t farthest = *highest;
+  double best = -INFINITY;
+  for (std::size_t i = *highest; i < std::min(points.count, *highest + block); ++i) {
+    const double above = dot(up, Vector3{points.x[i], points.y[i], points.z[i]} - from);
+    if (above > best) best = above, farthest = i;
+  }
+  return farthest;
+}
+
 }  // namespace
 
-Plane lowest_plane_above(std::span<const double> x, std::span<const double> y, std::span<const double> z,
-                         double centre_x, double centre_y) {
-  SNUG_EXPECT(!x.empty() && x.size() == y.size() && x.size() == z.size());
+PlanesAbove::PlanesAbove(std::span<const double> x, std::span<const double> y, double centre_x,
+                         double centre_y)
+    : x_(x), y_(y), centre_x_(centre_x), centre_y_(centre_y) {
+  SNUG_EXPECT(!x.empty() && x.size() == y.size());
+  for (const std::span<const double>& axis : {x, y}) {
+    const auto [least, most] = std::minmax_element(axis.begin(), axis.end());
+    extremes_.push_back(static_cast<std::size_t>(least - axis.begin()));
+    extremes_.push_back(static_cast<std::size_t>(most - axis.begin()));
+  }
+}
+
+Plane PlanesAbove::lowest(std::span<const double> z) const {
+  SNUG_EXPECT(z.size() == x_.size());
   // Few points touch the plane: it is made for some, and the one farthest above it joins them.
   std::vector<std::size_t> some;
   std::vector<LinePoint> points;
   const auto join = [&](std::size_t i) {
     if (std::find(some.begin(), some.end(), i) != some.end()) return false;
     some.push_back(i);
-    points.push_back({x[i] - centre_x, y[i] - centre_y, z[i]});
+    points.push_back({x_[i] - centre_x_, y_[i] - centre_y_, z[i]});
     return true;
   };
-  for (const std::span<const double>& axis : {x, y}) {
-    const auto [least, most] = std::minmax_element(axis.begin(), axis.end());
-    join(static_cast<std::size_t>(least - axis.begin()));
-    join(static_cast<std::size_t>(most - axis.begin()));
-  }
+  for (const std::size_t i : extremes_) join(i);
   while (true) {
     std::vector<LinePoint> shuffled = points;
     shuffle(shuffled);
     const CentredPlane plane = lowest_above(shuffled);
-    std::size_t farthest = 0;
-    double most = -INFINITY;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double above =
-          z[i] - (plane.at_centre + plane.slopes.x * (x[i] - centre_x) + plane.slopes.y * (y[i] - centre_y));
-      if (above > most) most = above, farthest = i;
-    }
-    if (most <= negligible || !join(farthest))
-      return {plane.at_centre, plane.slopes.x, plane.slopes.y, centre_x, centre_y};
+    const std::optional<std::size_t> next = farthest_above(
+        {x_.data(), y_.data(), z.data(), z.size()}, {centre_x_, centre_y_, plane.at_centre}, plane.slopes);
+    if (!next || !join(*next)) return {plane.at_centre, plane.slopes.x, plane.slopes.y, centre_x_, centre_y_};
   }
 }
 

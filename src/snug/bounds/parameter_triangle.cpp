@@ -36,21 +36,30 @@ ParameterTriangle part_of(const ParameterTriangle& t, std::size_t part) {
   return part == 0 ? ParameterTriangle{t[0], t[1], middle} : ParameterTriangle{middle, t[1], t[2]};
 }
 
+RaisedQuadratic::RaisedQuadratic(const ParameterTriangle& piece, std::size_t degree)
+    : degree_(degree), polar_{} {
+  SNUG_EXPECT(degree >= 2);
+  for (std::size_t k = 0; k < 3; ++k) {
+    add_polar(1, piece[k], piece[k], polar_[2 * k]);
+    add_polar(1, piece[k], piece[(k + 1) % 3], polar_[2 * k + 1]);
+  }
+}
+
 // Bezier point (a_0, a_1, a_2) of degree m is the mean of the values of the polar form at the pairs of
 // corners among its m: C(a_k, 2) times corner k twice, a_k a_l times corners k and l.
-QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t degree, std::size_t i,
-                                  std::size_t j) {
-  SNUG_EXPECT(degree >= 2 && i + j <= degree);
-  const std::array<std::size_t, 3> times{degree - i - j, i, j};
+QuadraticWeights RaisedQuadratic::point(std::size_t i, std::size_t j) const {
+  SNUG_EXPECT(i + j <= degree_);
+  const std::array<std::size_t, 3> times{degree_ - i - j, i, j};
   QuadraticWeights weights{};
-  const auto add = [&](std::size_t pairs, const Weights& s, const Weights& t) {
-    if (pairs > 0) add_polar(static_cast<double>(pairs), s, t, weights);
+  const auto add = [&](std::size_t pairs, const QuadraticWeights& polar) {
+    if (pairs == 0) return;
+    for (std::size_t l = 0; l < 6; ++l) weights[l] += static_cast<double>(pairs) * polar[l];
   };
   for (std::size_t k = 0; k < 3; ++k) {
-    add(times[k] * (times[k] - 1) / 2 * (times[k] > 0), piece[k], piece[k]);
-    add(times[k] * times[(k + 1) % 3], piece[k], piece[(k + 1) % 3]);
+    add(times[k] * (times[k] - (times[k] > 0)) / 2, polar_[2 * k]);
+    add(times[k] * times[(k + 1) % 3], polar_[2 * k + 1]);
   }
-  const auto pairs = static_cast<double>(degree * (degree - 1) / 2);
+  const auto pairs = static_cast<double>(degree_ * (degree_ - 1) / 2);
   for (double& weight : weights) weight /= pairs;
   return weights;
 }

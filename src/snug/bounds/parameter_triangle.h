@@ -22,11 +22,21 @@ inline constexpr ParameterTriangle whole_patch{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
 /// edges 01, 12, 20.
 using QuadraticWeights = std::array<double, 6>;
 
-/// Of these the Bezier point u^i v^j of the quadratic over a piece, raised to `degree`.
-/// Guarantee: not negative; each is off by at most 16 roundoffs of itself.
-/// Requires:  degree at least 2, i + j at most as much.
-[[nodiscard]] QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t degree,
-                                                std::size_t i, std::size_t j);
+/// Of these the quadratic over a piece, raised to a higher degree.
+class RaisedQuadratic {
+ public:
+  /// Requires:  degree at least 2.
+  RaisedQuadratic(const ParameterTriangle& piece, std::size_t degree);
+  /// The Bezier point u^i v^j.
+  /// Guarantee: not negative; each is off by at most 16 roundoffs of itself.
+  /// Requires:  i + j at most the degree.
+  [[nodiscard]] QuadraticWeights point(std::size_t i, std::size_t j) const;
+
+ private:
+  std::size_t degree_;
+  std::array<QuadraticWeights, 6>
+      polar_;  // of each corner twice, and of two corners: 0 and 0, 0 and 1, 1 and 1 ...
+};
 /// The same of degree 3 in each direction over a parallelogram: (i, j) of 3 from its first corner to the second and
 /// to the third.
 [[nodiscard]] QuadraticWeights raised_quadratic(const ParameterTriangle& corners, std::size_t i,

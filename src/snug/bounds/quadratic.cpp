@@ -26,8 +26,9 @@ constexpr double tiny = 0x1p-500;
 constexpr std::array<std::array<std::size_t, 2>, 6> places{{{0, 0}, {2, 0}, {0, 2}, {1, 0}, {1, 1}, {0, 1}}};
 
 Restriction restriction_to(const ParameterTriangle& piece) {
+  const RaisedQuadratic quadratic(piece, 2);
   Restriction weights;
-  for (std::size_t k = 0; k < 6; ++k) weights[k] = raised_quadratic(piece, 2, places[k][0], places[k][1]);
+  for (std::size_t k = 0; k < 6; ++k) weights[k] = quadratic.point(places[k][0], places[k][1]);
   return weights;
 }
 

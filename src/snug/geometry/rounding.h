@@ -1,8 +1,10 @@
 #pragma once
 
+#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #ifdef __FAST_MATH__
@@ -30,8 +32,14 @@ inline constexpr double underflow_error = DBL_MIN;
 [[nodiscard]] constexpr double enlarged(double x) { return x * (1 + 0x1p-42) + underflow_error; }
 
 /// The neighbours of x: with correctly rounded x they enclose the exact value.
-[[nodiscard]] inline double rounded_down(double x) { return std::nextafter(x, -INFINITY); }
-[[nodiscard]] inline double rounded_up(double x) { return std::nextafter(x, INFINITY); }
+/// As std::nextafter(), without a call.
+[[nodiscard]] constexpr double rounded_up(double x) {
+  if (!(x < std::numeric_limits<double>::infinity())) return x;
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  constexpr std::int64_t negative_zero = std::numeric_limits<std::int64_t>::min();
+  return std::bit_cast<double>(bits == negative_zero ? 1 : bits < 0 ? bits - 1 : bits + 1);
+}
+[[nodiscard]] constexpr double rounded_down(double x) { return -rounded_up(-x); }
 
 /// The least number of single precision that is not below x.
 [[nodiscard]] inline float float_up(double x) {
