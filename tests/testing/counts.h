@@ -15,10 +15,11 @@ namespace snug::testing {
 #endif
 }
 
-/// The same, and else half of them where SNUG_HALF is set: numbers of random cases, and what these must have met.
+/// The same, and else an N-th of them where SNUG_SHARE is N, rounded up: numbers of random cases, and what these must have met.
 [[nodiscard]] inline std::uint64_t share(std::uint64_t usual) {
-  static const bool half = fewer(4) == 4 && std::getenv("SNUG_HALF") != nullptr;
-  return half ? (usual + 1) / 2 : fewer(usual);
+  static const char* const text = fewer(4) == 4 ? std::getenv("SNUG_SHARE") : nullptr;
+  static const std::uint64_t parts = text ? std::strtoull(text, nullptr, 10) : 1;
+  return parts > 1 ? (usual + parts - 1) / parts : fewer(usual);
 }
 
 /// Is case `number` to be tried? All are but for sanitizers, which take every fifth.
