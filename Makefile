@@ -64,7 +64,7 @@ deb:  ## Debian packages of the command, the library and the module for Python: 
 	@scripts/install_packages build python deb
 	@scripts/build_deb
 
-site:  ## the documentation as a site that needs no server: build/site/index.html
+site:  ## the documentation as a site that needs no server: build/site/index.html; with the live page, the reference for Python and outputs of notebooks after make page, make python, make notebooks
 	@scripts/install_packages docs
 	@scripts/build_site
 
@@ -84,7 +84,7 @@ blender:  ## the extension for Blender, with the wheel inside: build/snug_blende
 
 notebooks: python  ## executes the notebooks: build/notebooks
 	@scripts/install_packages notebooks
-	@scripts/run_notebooks "$$PWD/build/$(python_preset)/python" "$$PWD/build/notebooks"
+	@scripts/run_notebooks "$$PWD/build/$(python_preset)/python" "$$PWD/build/notebooks" $(wildcard build/$(python_preset)/bin/snug)
 
 python-asan: install-packages  ## the tests of the Python module under address and undefined-behaviour sanitizer
 	@$(call build,asan,snug_python snug_check)
@@ -127,7 +127,10 @@ tidy: install-packages  ## clang-tidy over the library
 	@cmake --preset dev > /dev/null
 	@run-clang-tidy -quiet -j $(JOBS) -p build/dev 'src/snug/.*\.cpp$$'
 
-docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/manufacturing.md, docs/rays.md, docs/nodal_functions.md, docs/figures.md and docs/independence.md; links and citations
+# Pictures for bright pages and for dark ones.
+lights = SNUG=$(CURDIR)/build/release/bin/snug
+
+docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/manufacturing.md, docs/rays.md, docs/gallery.md, docs/nodal_functions.md, docs/figures.md and docs/independence.md; links and citations
 	@$(call build,release,snug_command snug_research)
 	@scripts/install_packages docs
 	@mkdir -p build/docs
@@ -138,16 +141,18 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	  build/release/bin/snug-research rates --scheme $$scheme --at $$place --levels 36 -o build/docs/$$scheme-$$place.json > /dev/null; done; \
 	  build/release/bin/snug-research rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
 	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
-	@scripts/draw_schemes build/release/bin/snug docs/pictures
-	@scripts/draw_meshes build/release/bin/snug docs/pictures
-	@scripts/run_page build/release/bin/snug docs/manufacturing.md docs/pictures
+	@rm -rf build/lights && mkdir build/lights && ln -s ../../scripts/both_lights build/lights/snug && ln -s ../release/bin/snug-check ../release/bin/snug-research build/lights
+	@$(lights) scripts/draw_schemes build/lights/snug docs/pictures
+	@$(lights) scripts/draw_meshes build/lights/snug docs/pictures
+	@$(lights) scripts/run_page build/lights/snug docs/manufacturing.md docs/pictures
 	@[ ! -x build/release/bin/bench_wraps ] || scripts/draw_wraps build/release/bin/snug build/release/bin/bench_wraps docs/pictures  # with CGAL, by make bench
-	@scripts/draw_nodal build/release/bin/snug docs/pictures
-	@scripts/draw_rays build/release/bin/snug docs/pictures
+	@$(lights) scripts/draw_nodal build/lights/snug docs/pictures
+	@$(lights) scripts/draw_rays build/lights/snug docs/pictures
 	@scripts/draw_independence build/release/bin/snug-research docs/pictures
-	@scripts/draw_dissertation build/release/bin/snug docs/pictures
-	@scripts/draw_examples build/release docs/pictures
-	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
+	@$(lights) scripts/draw_dissertation build/lights/snug docs/pictures
+	@$(lights) scripts/draw_examples build/release docs/pictures build/lights/snug
+	@$(lights) scripts/run_page build/lights/snug docs/gallery.md docs/pictures
+	@$(lights) scripts/demo build/lights/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py
 
 proofs:  ## what certificates rest on, checked by Coq: build/proofs

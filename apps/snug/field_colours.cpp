@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include <fmt/core.h>
 #include <snug/bound.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
@@ -38,10 +40,13 @@ Colour distinct_colour(std::size_t number) {
   return Colour::hex(codes[number % codes.size()]);
 }
 
+}  // namespace
+
 // A number at the places of a lattice on each patch, linear between them.
-struct Field {
+struct FieldColours::Field {
   PatchLattice lattice;
   std::vector<double> values;
+  std::vector<Colour> colours{};  // in their place, of the patches, where kinds are shown
 
   [[nodiscard]] double at(const QuickHit& hit) const { return lattice.interpolated(values, hit); }
   // The number that a share of all is below of.
@@ -56,6 +61,10 @@ struct Field {
     return *which;
   }
 };
+
+namespace {
+
+using Field = FieldColours::Field;
 
 // From the changes of the normal over small steps along u and v.
 double mean_curvature(const SurfacePoint& here, const SurfacePoint& along_u, const SurfacePoint& along_v) {
@@ -103,8 +112,7 @@ Field distances(const PlacedSurface& surface, const PlacedSurface& other, const 
   return field;
 }
 
-// Of each patch the longest side of its interval triangle's boxes, in units of the largest; less than a thousandth of
-// that is as good as nothing.
+// Of each patch the longest side of its interval triangle's boxes.
 Field thicknesses(const Surface& surface, const Run& run) {
   Field field{PatchLattice(surface, 1), {}};
   field.values.resize(field.lattice.patches().size());
@@ -115,51 +123,77 @@ Field thicknesses(const Surface& surface, const Run& run) {
         for (const Box3& box : piece.interval.corner) side = std::max(side, longest_side(box));
       },
       run);
-  const double largest =
-      field.values.empty() ? 0 : *std::max_element(field.values.begin(), field.values.end());
-  for (double& side : field.values) {
-    side = largest > 0 && std::isfinite(largest) ? 1 + std::log10(std::max(side / largest, 1e-3)) / 3 : 0;
+  return field;
+}
+
+Field kinds(const Surface& surface) {
+  Field field{PatchLattice(surface, 1), {}};
+  std::map<std::uint32_t, std::size_t> numbers;  // in the order of the patches
+  for (const PatchPlace& patch : field.lattice.patches()) {
+    const std::optional<std::uint32_t> topology = topology_of(surface, patch);
+    field.colours.push_back(
+        topology ? distinct_colour(numbers.try_emplace(*topology, numbers.size()).first->second) : grey);
   }
   return field;
 }
 
+constexpr double thinnest = 1e-3;  // of the thickest: less is as good as nothing
+constexpr double deepest_level = 6;
+
 }  // namespace
 
-std::function<Colour(const QuickHit&)> colours_by(std::string_view name, const PlacedSurface& surface,
-                                                  const PlacedSurface& other, int threads,
-                                                  const WorkMonitor& monitor) {
-  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
-  const Run run{.threads = threads, .monitor = &quiet};
-  if (name == "level") {
-    return [](const QuickHit& hit) { return ramp(hit.level / 6.0); };
+void FieldColours::add(const PlacedSurface& surface, const PlacedSurface& other, const Run& run) {
+  const auto made = [&]() -> Field {
+    if (name_ == "thickness") return thicknesses(surface.surface(), run);
+    if (name_ == "kind") return kinds(surface.surface());
+    if (name_ == "curvature") return curvatures(surface.surface(), run);
+    if (name_ == "distance") return distances(surface, other, run);
+    return {PatchLattice(surface.surface(), 1), {}};  // levels are those of hits
+  };
+  const auto field = std::make_shared<const Field>(made());
+  if (!field->values.empty()) {
+    const bool curvature = name_ == "curvature";
+    const double most = field->quantile(curvature ? 0.95 : 1, curvature);
+    const double least = curvature ? -most : field->quantile(0, false);
+    const bool first = std::all_of(fields_.begin(), fields_.end(),
+                                   [](const auto& earlier) { return earlier->values.empty(); });
+    largest_ = first ? most : std::max(largest_, most);
+    least_ = first ? least : std::min(least_, least);
   }
-  if (name == "thickness") {
-    const auto field = std::make_shared<Field>(thicknesses(surface.surface(), run));
-    return [field](const QuickHit& hit) { return ramp(field->values[field->lattice.rank(hit.patch)]); };
-  }
-  if (name == "kind") {
-    const PatchLattice lattice(surface.surface(), 1);
-    std::vector<Colour> colours;
-    std::map<std::uint32_t, std::size_t> numbers;  // in the order of the patches
-    for (const PatchPlace& patch : lattice.patches()) {
-      const std::optional<std::uint32_t> topology = topology_of(surface.surface(), patch);
-      colours.push_back(
-          topology ? distinct_colour(numbers.try_emplace(*topology, numbers.size()).first->second) : grey);
-    }
-    return [lattice, colours](const QuickHit& hit) { return colours[lattice.rank(hit.patch)]; };
-  }
-  if (name == "curvature") {
-    const auto field = std::make_shared<Field>(curvatures(surface.surface(), run));
-    const double most = field->quantile(0.95, true);
-    return [field, most](const QuickHit& hit) {
-      return ramp(most > 0 ? 0.5 + field->at(hit) / (2 * most) : 0.5);
+  fields_.push_back(field);
+}
+
+std::function<Colour(const QuickHit&)> FieldColours::of(std::size_t which) const {
+  const std::shared_ptr<const Field> field = fields_[which];
+  if (name_ == "level") return [](const QuickHit& hit) { return ramp(hit.level / deepest_level); };
+  if (name_ == "kind")
+    return [field](const QuickHit& hit) { return field->colours[field->lattice.rank(hit.patch)]; };
+  const double least = least_, largest = largest_;
+  if (name_ == "thickness") {
+    return [field, largest](const QuickHit& hit) {
+      const double side = field->values[field->lattice.rank(hit.patch)];
+      return ramp(largest > 0 && std::isfinite(largest)
+                      ? 1 - std::log10(std::max(side / largest, thinnest)) / std::log10(thinnest)
+                      : 0);
     };
   }
-  const auto field = std::make_shared<Field>(distances(surface, other, run));
-  const double least = field->quantile(0, false), most = field->quantile(1, false);
-  return [field, least, most](const QuickHit& hit) {
-    return ramp(most > least ? (field->at(hit) - least) / (most - least) : 0);
+  const double middle = name_ == "curvature" ? 0.5 : 0;  // where all is the same
+  return [field, least, largest, middle](const QuickHit& hit) {
+    return ramp(largest > least ? (field->at(hit) - least) / (largest - least) : middle);
   };
+}
+
+ColourBar FieldColours::bar() const {
+  const auto text = [](double x) { return fmt::format("{:.3g}", x); };
+  if (name_ == "level") return {ramp, "splits", "0", text(deepest_level)};
+  if (name_ == "kind") {
+    const auto colour = [](double share) {
+      return share < 0.3 ? grey : distinct_colour(static_cast<std::size_t>((share - 0.3) / 0.1));
+    };
+    return {colour, "", "polynomial", "a colour a kind"};
+  }
+  if (name_ == "thickness") return {ramp, "thickness, log", text(thinnest * largest_), text(largest_)};
+  return {ramp, name_ == "curvature" ? "mean curvature" : name_, text(least_), text(largest_)};
 }
 
 }  // namespace snug::command

@@ -59,7 +59,7 @@ struct Options : CommonOptions {
   Degree degree;
   std::string size = "1000x1000", view, up;
   int samples = 3;
-  bool cage = false, enclosures = false, no_shadows = false;
+  bool cage = false, enclosures = false, no_shadows = false, dark = false;
   std::string error, cut;
   std::string colour = "plain";
   double zoom = 1;
@@ -135,8 +135,8 @@ struct Colours {
 };
 
 Colours colours_of_part(std::size_t part) {
-  if (part % 2 == 0) return {palette::sea, palette::mint, palette::mint_edge};
-  return {palette::clay, palette::amber, palette::amber_edge};
+  if (part % 2 == 0) return {palette::sea, palette::amber, palette::amber_edge};
+  return {palette::clay, palette::mint, palette::mint_edge};
 }
 
 // A drawn file: its scheme and its pose.
@@ -184,6 +184,9 @@ void require_of_use(const Options& options, const std::vector<Part>& parts) {
   }
   if (!surfaces && !options.boundary.empty()) {
     throw UsageError("render: --boundary is for surfaces; " + which + "curves");
+  }
+  if (curves && options.colour == "distance") {
+    throw UsageError("render: --colour distance is for two surfaces; one of these is answered as curves");
   }
   if (!surfaces && bound_method(options) == BoundMethod::table) {
     throw UsageError("render: --bounds table is for surfaces; " + which + "curves");
@@ -419,14 +422,33 @@ void add_surfaces(Shot& shot, const Options& options, std::span<const Part> part
     if (!shot.casters[part]) continue;
     shot.scene.surfaces.push_back(
         scene_surface(*shot.casters[part], parts[part].pose, units, static_cast<std::uint32_t>(2 * part)));
-    if (options.colour == "plain") continue;
-    const Part& other = parts[part == 0 ? parts.size() - 1 : 0];
+  }
+}
+
+Colour ink_of(const Options& options) { return options.dark ? palette::chalk : palette::ink; }
+
+double label_height(double line_scale) {
+  return std::max(palette::smallest_label, palette::label_height * line_scale);
+}
+
+// The colours that --colour asks for, and the key to them.
+void add_colours(Shot& shot, const Options& options, std::span<const Part> parts, double line_scale,
+                 const WorkMonitor& monitor) {
+  if (options.colour == "plain" || shot.scene.surfaces.empty()) return;
+  const WorkMonitor quiet{.on_progress = {}, .stop = monitor.stop};
+  FieldColours colours(options.colour);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (!shot.casters[part]) continue;
+    const Part& other = options.colour == "distance" ? parts[part == 0 ? 1 : 0] : parts[part];
     naming(parts[part].path, [&] {
-      shot.scene.surfaces.back().colour =
-          colours_by(options.colour, {*parts[part].surface(), parts[part].pose},
-                     {*other.surface(), other.pose}, options.threads, monitor);
+      colours.add({*parts[part].surface(), parts[part].pose}, {*other.surface(), other.pose},
+                  {.threads = options.threads, .monitor = &quiet});
     });
   }
+  for (std::size_t i = 0; i < shot.scene.surfaces.size(); ++i) shot.scene.surfaces[i].colour = colours.of(i);
+  shot.scene.bar = colours.bar();
+  shot.scene.bar->height_in_pixels = label_height(line_scale);
+  shot.scene.bar->text = ink_of(options);
 }
 
 PictureUnits units_of(std::span<const Part> parts) {
@@ -467,9 +489,9 @@ Shot compose(const Options& options, std::span<const Part> parts, const Enclosur
   if (options.cage) {
     const double width = palette::cage_width * line_scale;
     for (const Part& part : parts) {
-      if (part.surface()) add_cage(shot.scene, {*part.surface(), part.pose}, units, width, palette::ink);
+      if (part.surface()) add_cage(shot.scene, {*part.surface(), part.pose}, units, width, ink_of(options));
     }
-    for (const auto& [part, drawn] : curves) drawn.add_polygons(shot.scene, width, palette::ink);
+    for (const auto& [part, drawn] : curves) drawn.add_polygons(shot.scene, width, ink_of(options));
     for (const Line& line : shot.scene.lines) visible.insert(visible.end(), {line.a, line.b});
   }
   for (const std::string& text : options.witnesses) {
@@ -486,11 +508,14 @@ Shot compose(const Options& options, std::span<const Part> parts, const Enclosur
   }
   if (visible.empty()) return shot;
   shot.camera = frame(visible, view.direction, view.up, aspect);
-  shot.camera.tangent /= options.zoom;
+  constexpr double room_for_bar = 1.15;
+  shot.camera.tangent *= (options.colour == "plain" ? 1 : room_for_bar) / options.zoom;
   add_surfaces(shot, options, parts, units, largest_scale(visible, shot.camera, size.height), monitor);
+  add_colours(shot, options, parts, line_scale, monitor);
+  const double below = shot.scene.bar ? 1.5 : 0;  // lines that the bar takes
   for (std::size_t i = 0; i < options.labels.size(); ++i) {
-    shot.scene.labels.push_back({options.labels[i], palette::label_height * line_scale, palette::ink,
-                                 static_cast<double>(options.labels.size() - 1 - i)});
+    shot.scene.labels.push_back({options.labels[i], label_height(line_scale), ink_of(options),
+                                 static_cast<double>(options.labels.size() - 1 - i) + below});
   }
   if (!options.cut.empty()) shot.scene.cut = cut_plane(parse_witness(options.cut, "--cut"), units);
   for (std::size_t part = 0; part < solids.size(); ++part) {
@@ -536,6 +561,7 @@ ExitStatus run(const Options& options) {
   how.height = size.height;
   how.samples = options.samples;
   how.shadows = !options.no_shadows;
+  if (options.dark) how.background = {palette::slate_top, palette::slate_foot};
   how.surface_tolerance = shot.tolerance;
   how.parallel_for = [&](std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
     parallel_for(count, options.threads, body);
@@ -607,6 +633,7 @@ Command render_command() {
   list.add(Group::own, "--cut \"X Y Z  X Y Z\"", &options->cut,
            "Clip surfaces by the plane through the first point, normal to the line to the second");
   list.add(Group::own, "--no-shadows", &options->no_shadows, "Shade surfaces without cast shadows");
+  list.add(Group::own, "--dark", &options->dark, "A dark background, with bright lines and letters");
   list.add(Group::own, "--zoom FACTOR", &options->zoom, "Magnify the centre of the picture, 0.01 to 1000")
       .between(0.01, 1000);
   list.add(Group::own, "--view \"X Y Z\"", &options->view,

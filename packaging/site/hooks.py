@@ -1,4 +1,5 @@
-"""A folder in the navigation of mkdocs.yml stands for its pages, index.md or README.md first; every page of docs/ has to be in it."""
+"""A folder in the navigation of mkdocs.yml stands for its pages, index.md or README.md first, or for nothing if it was not made; every page of
+docs/ has to be in it."""
 
 import logging
 import pathlib
@@ -13,7 +14,8 @@ def pages_of(folder, docs):
 
 def expanded(nav, docs):
     if isinstance(nav, list):
-        return [expanded(item, docs) for item in nav]
+        made = [expanded(item, docs) for item in nav]
+        return [item for item in made if not (isinstance(item, dict) and [] in item.values())]
     if isinstance(nav, dict):
         return {title: expanded(item, docs) for title, item in nav.items()}
     return pages_of(nav, docs) if nav.endswith("/") else nav

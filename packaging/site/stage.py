@@ -1,9 +1,12 @@
 """Lays out what MkDocs reads: stage.py OUTPUT SOURCES DOXYGEN-XML.
 
-README.md, CONTRIBUTING.md and CHANGELOG.md become pages beside those of docs/; files of the repository that pages link to become pages of their
-text, below files/, and folders lists of these. Links are changed accordingly; those that lead nowhere are left for check.py to find.
+README.md, CONTRIBUTING.md and CHANGELOG.md become pages beside those of docs/, and so do notebooks, with their outputs where `make notebooks` made
+them; files of the repository that pages link to become pages of their text, below files/, and folders lists of these. Links are changed
+accordingly; those that lead nowhere are left for check.py to find. A picture with a twin for dark pages (x.dark.png) stands beside it.
 """
 
+import base64
+import json
 import os
 import pathlib
 import re
@@ -11,13 +14,15 @@ import shutil
 import subprocess
 import sys
 
+import python_reference
 import reference
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LINK = re.compile(r"(?<=\]\()([^)\s#]+)(?=[)#])")
 LANGUAGE = {".h": "cpp", ".cpp": "cpp", ".ts": "ts", ".mjs": "js", ".py": "python", ".json": "json", ".cmake": "cmake"}
 LONGEST = 100_000
-
+PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s#]+\.png)\)")
+PICTURES = re.compile(r"(!\[[^\]]*\]\([^)\s#]+\.png\))")
 
 MARKER = re.compile(r"( {0,3})((?:[-*+]|[0-9]{1,9}[.)]) +)(?=\S)")
 FENCE = re.compile(r" *(```|~~~)")
@@ -74,6 +79,8 @@ class Site:
                 self.pages[path] = path.relative_to("docs")
             elif path.parts[0] in ("include", "adapters") and path.suffix == ".h" and path.name != "snug.h":
                 self.pages[path] = pathlib.Path("reference", path.stem + ".md")
+            elif path.parts[0] == "notebooks" and path.suffix == ".ipynb":
+                self.pages[path] = path.with_suffix(".md")
         for folder in ("decisions", "derivations"):
             self.pages[pathlib.Path("docs", folder)] = pathlib.Path(folder, "README.md")
 
@@ -131,14 +138,50 @@ class Site:
             wanted = pathlib.Path(os.path.normpath(path.parent / target))
             made = self.page_of(wanted)
             return target if made is None else os.path.relpath(made, page.parent)
-        return LINK.sub(link, text)
+
+        def both(match):
+            bright, dark = LINK.sub(link, match[0]), pathlib.Path(os.path.normpath(path.parent / match[1]))
+            if dark.with_suffix(".dark.png") not in self.files:
+                return bright
+            return bright[:-1] + "#only-light)" + bright[:-5] + ".dark.png#only-dark)"
+        return "".join(both(part) if (part := PICTURE.fullmatch(piece)) else LINK.sub(link, piece) for piece in PICTURES.split(text))
+
+    def notebook(self, path, page):
+        """Its cells one after the other, with what they print and show."""
+        made = ROOT / "build" / path
+        lines = []
+        for number, cell in enumerate(json.loads((made if made.exists() else ROOT / path).read_text(encoding="utf-8"))["cells"]):
+            source = "".join(cell["source"])
+            if cell["cell_type"] == "markdown":
+                lines += [self.moved(source, path, page), ""]
+                continue
+            lines += ["```python", source, "```", ""]
+            for k, output in enumerate(cell.get("outputs", [])):
+                data = output.get("data", {})
+                if "image/png" in data:
+                    name = f"{page.stem}_{number}_{k}.png"
+                    (self.output / page).parent.mkdir(parents=True, exist_ok=True)
+                    (self.output / page).with_name(name).write_bytes(base64.b64decode(data["image/png"]))
+                    lines += [f"![What this cell shows]({name})", ""]
+                elif text := "".join(output.get("text", data.get("text/plain", []))).rstrip():
+                    lines += ["```text", text, "```", ""]
+        return "\n".join(lines)
 
     def run(self, xml):
         headers = [path for path in self.files if self.pages.get(path, pathlib.Path()).parts[:1] == ("reference",)]
         for name, text in reference.pages(xml, headers):
             self.write(pathlib.Path("reference", name), text)
+        for module in (ROOT / "build/release/python", ROOT / "build/python/python"):
+            if any((module / "snug").glob("_snug*.so")):
+                for name, text in python_reference.pages(module):
+                    self.write(pathlib.Path("python", name), text)
+                break
+        else:
+            print("build_site: no reference for Python: make python first", file=sys.stderr)
         for path, page in list(self.pages.items()):
-            if path.suffix == ".md":
+            if path.suffix == ".ipynb":
+                self.write(page, self.notebook(path, page))
+            elif path.suffix == ".md":
                 self.write(page, self.moved((ROOT / path).read_text(encoding="utf-8"), path, page))
             elif path.parts[0] == "docs" and path.is_file():
                 (self.output / page).parent.mkdir(parents=True, exist_ok=True)

@@ -118,6 +118,7 @@ TEST_F(ray_command, pictures_show_what_is_asked_for) {
                                               {"--opacity", "1", "--opacity", "0.2"},
                                               {"--cut", "1 1 1  2 1 1"},
                                               {"--zoom", "3"},
+                                              {"--dark"},
                                               {"--label", "separated, gap 0.2"},
                                               {"--colour", "kind"},
                                               {"--colour", "level"},

@@ -52,6 +52,13 @@ TEST(urdf, links_and_joints_are_a_tree) {
   EXPECT_EQ(arm.meshes[0].metres_per_unit, 1.0);
 }
 
+TEST(urdf, a_scene_of_parts_is_sent_elsewhere) {
+  for (const char* text : {"{\"parts\": []}", "\n v 0 0 0", "solid a"})
+    EXPECT_EQ(unreadable([&] { static_cast<void>(parse_robot(text, "dir/r.urdf")); }),
+              "dir/r.urdf: not a robot in URDF, which is XML; of parts in a scene file ask collide or "
+              "distance, with --scene");
+}
+
 TEST(urdf, roll_pitch_and_yaw_turn_about_axes_that_stay) {
   const Robot one = parse(link("a") + link("b") + joint("j", "a", "b", "<origin rpy='0.3 0.4 0.5'/>"));
   const Motion wanted =

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -59,6 +60,31 @@ TEST(lettering, is_in_front_of_everything) {
   EXPECT_GT(image.rgb[stem], 200);
   EXPECT_LT(image.rgb[stem + 1], 60);
   EXPECT_EQ(image.rgb[3 * (20 * 100 + 80)], 0);  // the triangle
+}
+
+TEST(colour_bar, shows_its_colours_along_the_lower_border_and_its_words_above) {
+  PictureScene scene;
+  scene.bar = {[](double share) { return Colour{share, 0, 1 - share}; }, "NAME", "0", "1", 10, {0, 0, 0}};
+  RenderOptions options;
+  options.width = options.height = 200;
+  const Camera camera{.eye = {}, .right = {1, 0, 0}, .up = {0, 1, 0}, .forward = {0, 0, -1}, .tangent = 1};
+  const Image image = render(scene, camera, options);
+  const auto pixel = [&](int column, int row) { return image.rgb.data() + 3 * (row * 200 + column); };
+  // The bar runs from 10 to 190, and is 6 pixels high.
+  for (const int column : {12, 60, 100, 140, 188}) {
+    const std::uint8_t* here = pixel(column, 190);
+    EXPECT_NEAR(here[0], 255 * (column + 0.5 - 10) / 180, 3) << column;
+    EXPECT_EQ(here[1], 0);
+    EXPECT_NEAR(here[2], 255 * (1 - (column + 0.5 - 10) / 180), 3) << column;
+  }
+  EXPECT_GT(pixel(4, 190)[1], 200);
+  // Ink at both ends and in the middle of the line of words.
+  for (const auto& [from, to] : {std::pair(8, 20), {80, 120}, {180, 192}}) {
+    int darkest = 255;
+    for (int row = 170; row < 184; ++row)
+      for (int column = from; column < to; ++column) darkest = std::min<int>(darkest, *pixel(column, row));
+    EXPECT_LT(darkest, 100) << from;
+  }
 }
 
 }  // namespace

@@ -100,6 +100,11 @@ void expect_sound(const PictureScene& scene, const Camera& camera, const RenderO
         std::isfinite(label.height_in_pixels) && label.height_in_pixels > 0 && in_unit(label.colour),
         "render: the height of a label must be positive, and its colour from 0 to 1");
   }
+  if (scene.bar) {
+    const double height = scene.bar->height_in_pixels;
+    require_value(std::isfinite(height) && height > 0 && in_unit(scene.bar->text) && scene.bar->colour,
+                  "render: a bar has colours, and letters of a positive height and a colour from 0 to 1");
+  }
   for (const Line& line : scene.lines) {
     require_value(is_finite(line.a) && is_finite(line.b), "render: a line is not finite");
     require_value(std::isfinite(line.width_in_pixels) && line.width_in_pixels > 0 && in_unit(line.colour),
@@ -167,7 +172,9 @@ class Renderer {
   };
 
   void add_line(const Line& line, double near_depth);
+  void write(std::string_view text, double left, double foot, double size, const Colour& colour);
   void add_label(const Label& label);
+  void add_bar(const ColourBar& bar);
   void sort_strokes_into_rows();
   [[nodiscard]] Vector3 turned(Vector3 v) const {
     return {dot(v, camera_.right), dot(v, camera_.up), dot(v, camera_.forward)};
@@ -238,6 +245,7 @@ Renderer::Renderer(const PictureScene& scene, const Camera& camera, const Render
     reach = std::max(reach, std::max(length(line.a - camera.eye), length(line.b - camera.eye)));
   for (const Line& line : scene.lines) add_line(line, 1e-4 * reach);
   for (const Label& label : scene.labels) add_label(label);
+  if (scene.bar) add_bar(*scene.bar);
   sort_strokes_into_rows();
 }
 
@@ -256,21 +264,44 @@ void Renderer::add_line(const Line& line, double near_depth) {
                       1 - std::min(0.5, 3 * half_width * 2 * half_pixel_), light_of(line.colour)});
 }
 
-// Dark on a rim of light, so that it is read on everything.
-void Renderer::add_label(const Label& label) {
+// On a rim, so that it is read on everything.
+void Renderer::write(std::string_view text, double left, double foot, double size, const Colour& colour) {
   constexpr double in_front = 1e12;  // one over a depth
-  // Long lines are smaller, and fit.
-  const double size = std::min(label.height_in_pixels, options_.width / (2 + lettering_width(label.text))),
-               left = size, foot = options_.height - size * (1 + 1.7 * label.lines_up);
-  const std::vector<LetterStroke> letters = lettering(label.text);
+  const bool bright = colour.red + colour.green + colour.blue > 1.5;
+  const std::vector<LetterStroke> letters = lettering(text);
   for (const bool rim : {true, false}) {
+    const Colour shown = !rim ? colour : bright ? Colour{0, 0, 0} : Colour{1, 1, 1};
     for (const LetterStroke& stroke : letters) {
       const double nearness = rim ? in_front : 2 * in_front;
       strokes_.push_back({left + size * stroke.from[0], foot - size * stroke.from[1],
                           left + size * stroke.to[0], foot - size * stroke.to[1], nearness, nearness,
-                          (rim ? 0.17 : 0.08) * size, 1, light_of(rim ? Colour{1, 1, 1} : label.colour)});
+                          (rim ? 0.17 : 0.08) * size, 1, light_of(shown)});
     }
   }
+}
+
+void Renderer::add_label(const Label& label) {
+  // Long lines are smaller, and fit.
+  const double size = std::min(label.height_in_pixels, options_.width / (2 + lettering_width(label.text)));
+  write(label.text, size, options_.height - size * (1 + 1.7 * label.lines_up), size, label.colour);
+}
+
+// Along the lower border, its words above it: the ends at its ends, the name between them.
+void Renderer::add_bar(const ColourBar& bar) {
+  constexpr double in_front = 1e12;
+  const double words = lettering_width(bar.least) + lettering_width(bar.name) + lettering_width(bar.largest);
+  const double size = std::min(bar.height_in_pixels, options_.width / (5 + words));
+  const double left = size, right = options_.width - size, top = options_.height - 1.3 * size,
+               foot = options_.height - 0.7 * size, line = options_.height - 1.8 * size;
+  for (double x = left; x + 1 <= right; x += 1) {
+    const Colour colour = bar.colour((x + 0.5 - left) / (right - left));
+    strokes_.push_back({x + 0.5, top, x + 0.5, foot, in_front, in_front, 0.5, 1, light_of(colour)});
+  }
+  const double end = right - size * lettering_width(bar.largest);
+  write(bar.least, left, line, size, bar.text);
+  write(bar.name, (left + size * lettering_width(bar.least) + end - size * lettering_width(bar.name)) / 2,
+        line, size, bar.text);
+  write(bar.largest, end, line, size, bar.text);
 }
 
 void Renderer::sort_strokes_into_rows() {

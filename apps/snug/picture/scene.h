@@ -45,12 +45,21 @@ struct SceneSurface {
   std::function<Colour(const QuickHit&)> colour{};  ///< in place of the material's, where given
 };
 
-/// A line of text in front of everything, as lettering() draws it, from the lower left corner of the picture.
+/// A line of text in front of everything, as lettering() draws it, from the lower left corner of the picture; its rim
+/// is white, or black where the text is bright.
 struct Label {
   std::string text;
   double height_in_pixels;  ///< of a capital
   Colour colour;
   double lines_up = 0;  ///< so many lines above the lowest one
+};
+
+/// A key to colours in front of everything, along the lower border; above it its name, and at its ends what they stand for.
+struct ColourBar {
+  std::function<Colour(double share)> colour;  ///< from 0, at the left, to 1
+  std::string name, least, largest;
+  double height_in_pixels = 1;  ///< of a capital; smaller where the words would not fit
+  Colour text{};
 };
 
 /// Of surfaces all is left out where dot(normal, p) is more than `offset`.
@@ -67,6 +76,7 @@ struct PictureScene {
   std::vector<SceneSurface> surfaces{};
   std::optional<CutPlane> cut{};
   std::vector<Label> labels{};
+  std::optional<ColourBar> bar{};
 };
 
 }  // namespace snug

@@ -431,7 +431,12 @@ Robot parse_robot(std::string_view bytes, const std::string& path, const RobotOp
   const std::string name = input_name(path);
   require_value(options.primitive_error >= 1e-5 && options.primitive_error < 1,
                 "robot: the error of cylinders and spheres is not from 1e-5 to below 1, of the radius");
-  return RobotReader(plain_text(bytes, name), name, path, options).read();
+  const std::string_view text = plain_text(bytes, name);
+  if (const auto first = text.find_first_not_of(" \t\r\n"); first != text.npos && text[first] != '<')
+    fail_in_file(
+        name,
+        "not a robot in URDF, which is XML; of parts in a scene file ask collide or distance, with --scene");
+  return RobotReader(text, name, path, options).read();
 }
 
 Robot read_robot(const std::string& path, const RobotOptions& options, const Run& run) {
