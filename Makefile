@@ -19,7 +19,7 @@ ctest = ctest --parallel $(shell expr $(JOBS) + 1) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: check-all blender deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs proofs check asan tsan fuzz install-packages clean
+.PHONY: check-all blender deb tables site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs proofs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -100,6 +100,9 @@ bench: peers  ## the measurements of bench/
 peers:  ## builds the measurements and the comparisons with other programs, in build/release
 	@scripts/install_packages build test bench python
 	@$(call build,bench)
+
+tables: peers  ## docs/tables.md, measured anew: some minutes on a quiet machine
+	@scripts/write_tables build/release/bin/snug-research
 
 asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer; ASAN_ROOMS="io mesh": those of these folders; ASAN_WITHOUT: a pattern of names
 	@$(call build,asan,$(or $(ASAN_ROOMS:%=%_test),tests_fast))

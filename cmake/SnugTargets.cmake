@@ -101,6 +101,11 @@ function(snug_library)
   target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy nlohmann_json::nlohmann_json
                                              Threads::Threads ${snug_zlib} ${snug_assimp})
+  # On ARM NEON, as all processors have it: vectors without a fixed length cannot be members; and where Highway chooses at run time it
+  # asks for instructions that implicit constructors, which GCC makes without them, cannot call.
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+    target_compile_definitions(snug_objects PRIVATE HWY_COMPILE_ONLY_STATIC TOOLCHAIN_MISS_SYS_AUXV_H)
+  endif()
   set_source_files_properties(../support/system_files_windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # <windows.h> names much
   set_source_files_properties(io/zip.cpp PROPERTIES COMPILE_DEFINITIONS SNUG_HAS_ZLIB=$<BOOL:${ZLIB_FOUND}>
                               SKIP_UNITY_BUILD_INCLUSION ON)

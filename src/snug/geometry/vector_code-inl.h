@@ -2,8 +2,6 @@
 // path and includes this first: no #pragma once, since each instruction set reads it again.
 #ifdef SNUG_SANITIZED  // one old and one common instruction set, since their checks take minutes to compile
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
-#elif defined(__aarch64__)  // members and arrays cannot be vectors without a fixed length
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #else
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #endif
