@@ -62,7 +62,7 @@ def markdown(text):
             paragraphs.append(paragraph)
             continue
         parts = re.split(r"(`[^`]+`)", " ".join(paragraph.split()))
-        parts[::2] = [re.sub(r"([*_<\[\]\\])", r"\\\1", part) for part in parts[::2]]
+        parts[::2] = [re.sub(r"([*_\[\]\\])", r"\\\1", part).replace("<", "&lt;") for part in parts[::2]]
         paragraphs.append(re.sub(r"^(\d+|[-+#>])", r"\\\1", "".join(parts)) if re.match(r"[-+#>]", "".join(parts)) else "".join(parts))
     return "\n\n".join(paragraphs)
 
