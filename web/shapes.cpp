@@ -247,17 +247,18 @@ val measured(const Part& part, const val& options) {
 // A STEP file of B-spline faces.
 val step_of(const Part& part, const val& options) {
   return guarded([&] {
+    constexpr std::array units{"mm", "cm", "m", "inch", "foot", "micron"}, protocols{"ap242", "ap214"};
     StepOptions file;
     file.name = option<std::string>(options, "name").value_or("part");
-    const auto one_of = [&](const char* name, const std::array<const char*, 4>& words) {
+    const auto one_of = [&](const char* name, std::span<const char* const> words) {
       const std::string word = option<std::string>(options, name).value_or(words[0]);
       const auto at = std::find(words.begin(), words.end(), word);
       if (at == words.end())
         throw InputError(InputProblem::value, std::string(name) + ": there is no '" + word + "'");
       return static_cast<std::uint8_t>(at - words.begin());
     };
-    file.unit = static_cast<LengthUnit>(one_of("units", {"mm", "cm", "m", "inch"}));
-    file.ap214 = one_of("protocol", {"ap242", "ap214", "ap214", "ap214"}) > 0;
+    file.unit = static_cast<LengthUnit>(one_of("units", units));
+    file.ap214 = one_of("protocol", protocols) > 0;
     const Brep brep =
         to_brep(part.surface(),
                 {.error = option<double>(options, "error"), .max_angle = option<double>(options, "maxAngle")},

@@ -1,8 +1,10 @@
 #include <snug/brep.h>
+#include <snug/contacts.h>
 
 #include <fmt/core.h>
 #include <support/atomic_file.h>
 #include <support/error.h>
+#include <support/names.h>
 #include <support/read_file.h>
 
 #include <algorithm>
@@ -24,10 +26,12 @@ struct Options : CommonOptions {
 };
 
 LengthUnit unit_named(const std::string& name) {
-  return name == "mm"   ? LengthUnit::millimetre
-         : name == "cm" ? LengthUnit::centimetre
-         : name == "m"  ? LengthUnit::metre
-                        : LengthUnit::inch;
+  return name == "mm"       ? LengthUnit::millimetre
+         : name == "cm"     ? LengthUnit::centimetre
+         : name == "m"      ? LengthUnit::metre
+         : name == "foot"   ? LengthUnit::foot
+         : name == "micron" ? LengthUnit::micron
+                            : LengthUnit::inch;
 }
 
 double error_of(const Options& options, const Surface& surface) {
@@ -50,6 +54,7 @@ struct Job {
   std::vector<std::string> meshes;  // their files
   std::vector<Surface> surfaces;
   std::vector<double> errors;
+  std::vector<SelfContact> contacts;
   std::vector<StepShape> shapes;
   std::vector<StepPart> parts;
   void add(const std::string& mesh, const Surface& surface, const std::string& name) {
@@ -59,11 +64,14 @@ struct Job {
   }
 };
 
-std::string unit_word(const Options& options) { return options.units == "inch" ? "in" : options.units; }
+std::string unit_word(const Options& options) {
+  return options.units == "inch" ? "in" : options.units == "foot" ? "ft" : options.units;
+}
 
 void write_fields_of(JsonWriter& json, const Job& job, std::size_t i) {
   json.field("error", job.errors[i]);
   write_fields(json, job.shapes[i].brep);
+  json.field("self_contact", name_of(job.contacts[i].verdict));
 }
 
 void write_shape(Report& report, const Options& options, const std::string& name, const Brep& brep) {
@@ -86,7 +94,11 @@ void write_shape(Report& report, const Options& options, const std::string& name
   if (brep.outcome == Outcome::budget_spent)
     report.text("the budget is spent: give a larger --max-splits, --error or --max-angle");
   else if (brep.outcome != Outcome::complete)
-    report.text("the error or angle was not reached: give a larger --error or --max-angle");
+    report.text(options.max_angle > 0 && brep.break_angle > options.max_angle
+                    ? "the angle was not reached: around a vertex of high valence, or a spike, faces become "
+                      "flat slowly or never; "
+                      "give a larger --max-angle"
+                    : "the error was not reached, the least that was found is above: give a larger --error");
 }
 
 void write_summary(Report& report, const Options& options, const Job& job, std::size_t bytes) {
@@ -141,10 +153,10 @@ std::string units_of_files(const Job& job) {
   for (std::size_t i = 0; i < job.surfaces.size(); ++i) {
     const std::optional<double> metres = units_of(job.surfaces[i]);
     const std::string own = metres ? text_of_unit(*metres) : "mm";
-    if (own != "mm" && own != "cm" && own != "m" && own != "inch") {
-      throw InputError(InputProblem::refused,
-                       job.meshes[i] + " is in " + own +
-                           ": STEP files are written in mm, cm, m or inch; give --scale and --units");
+    if (metres && !unit_of(*metres)) {
+      throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own +
+                                                  ": STEP files are written in " +
+                                                  listed(unit_words(), "or") + "; give --scale and --units");
     }
     if (i > 0 && own != unit) {
       throw InputError(InputProblem::refused, job.meshes[i] + " is in " + own + ", " + job.meshes[0] +
@@ -155,6 +167,43 @@ std::string units_of_files(const Job& job) {
   return unit;
 }
 
+// Below this CAD programs lose their way: they take points within 1e-7 mm for one.
+constexpr double least_millimetres = 1;
+
+void note_small_parts(const Options& options, const Job& job) {
+  const Notes notes = notes_for(options);
+  if (!notes) return;
+  for (std::size_t i = 0; i < job.surfaces.size(); ++i) {
+    const double size = job.surfaces[i].size() * metres_of(options.units) * 1000;
+    if (size >= least_millimetres) continue;
+    notes(
+        fmt::format("{} is {:.3g} mm long: CAD programs take points within 1e-7 mm for one, and Open CASCADE "
+                    "finds wrong nearest points on parts so small; give --units if its numbers are not {}",
+                    job.meshes[i], size, options.units));
+  }
+}
+
+// A shape that meets itself is written, but not silently.
+constexpr std::uint64_t most_self_tests = 200'000;
+
+SelfContact self_contact_of(const Options& options, const std::string& mesh, const Surface& surface,
+                            Run run) {
+  run.max_splits = most_self_tests;
+  SelfContact found = self_contact(surface, {}, run);
+  const Notes notes = notes_for(options);
+  if (!notes || found.verdict == SelfVerdict::clear) return found;
+  if (found.verdict == SelfVerdict::undecided) {
+    notes(mesh + ": whether it meets itself was not decided; self-contact says where");
+    return found;
+  }
+  const Point3& at = found.pairs.front().points[0].point;
+  notes(fmt::format(
+      "{} meets itself, near {:.6g} {:.6g} {:.6g}: CAD programs may fail on such a shape; envelope makes a "
+      "mesh around it that does not",
+      mesh, at.x, at.y, at.z));
+  return found;
+}
+
 ExitStatus run(Options options) {
   if (options.output.empty()) throw UsageError("convert: -o FILE.step is missing: where the solid goes");
   if (options.json && options.output == "-")
@@ -162,6 +211,7 @@ ExitStatus run(Options options) {
   if (!options.error.empty()) static_cast<void>(parse_length(options.error, "--error"));
   Job job = read_all(options, stopped_by_interrupts());
   options.units = units_of_files(job);
+  note_small_parts(options, job);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("convert", to_standard_output);
@@ -179,6 +229,7 @@ ExitStatus run(Options options) {
         job.errors.push_back(*how.error);
         if (options.max_angle > 0) how.max_angle = options.max_angle;
         job.shapes[i].brep = to_brep(surface, how, run);
+        job.contacts.push_back(self_contact_of(options, job.meshes[i], surface, run));
       });
       complete = complete && job.shapes[i].brep.outcome == Outcome::complete;
       schemes.emplace_back(name_of(surface.scheme()));

@@ -93,7 +93,7 @@ struct BrepOptions {
                                     const Run& run = {});
 
 /// Lengths of a STEP file.
-enum class LengthUnit : std::uint8_t { millimetre, centimetre, metre, inch };
+enum class LengthUnit : std::uint8_t { millimetre, centimetre, metre, inch, foot, micron };
 
 struct StepOptions {
   std::string name = "part";  ///< of the product

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <snug/distance.h>
@@ -37,6 +38,12 @@ struct ScenePair {
   double gap = 0;  ///< lower bound of the distance, from boxes around both parts
   [[nodiscard]] bool separated_by_boxes() const { return gap > margin; }
 };
+
+/// Parts where they are placed, as the bytes of a 3MF file, which read_assembly() reads as the same parts, poses and doubles.
+/// Notes, errors: as format_mesh(); InputError also for another extension (unreadable), meshes in different units (refused), and
+///            a part whose mesh does not exist (value).
+[[nodiscard]] SNUG_API std::string format_assembly(const MeshAssembly& assembly, const std::string& path,
+                                                   const WriteOptions& options = {}, const Run& run = {});
 
 /// The broad phase: the pairs of a scene that may be within their margins of each other, in the order of Scene::pairs.
 ///

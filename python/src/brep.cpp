@@ -17,7 +17,9 @@ LengthUnit unit_named(const std::string& word) {
   if (word == "cm") return LengthUnit::centimetre;
   if (word == "m") return LengthUnit::metre;
   if (word == "inch") return LengthUnit::inch;
-  throw py::value_error("units: '" + word + "' is none of mm, cm, m and inch");
+  if (word == "foot") return LengthUnit::foot;
+  if (word == "micron") return LengthUnit::micron;
+  throw py::value_error("units: '" + word + "' is none of mm, cm, m, inch, foot and micron");
 }
 
 py::dict write_step(const PySurface& self, const py::object& file, const py::object& error,
@@ -56,7 +58,8 @@ void add_brep(py::class_<PySurface>& cls) {
       "quads.\n\n"
       "error: largest distance from the limit surface, either way, in mesh units or percent of the size "
       "(0.01 %).\n"
-      "max_angle: between faces across smooth edges, in degrees. units of the mesh: mm, cm, m or inch. "
+      "max_angle: between faces across smooth edges, in degrees. units of the mesh: mm, cm, m, inch, foot or "
+      "micron. "
       "protocol:\n"
       "ap242 or ap214.\n\n"
       "Returns a dict: error_bound and gap_bound (of faces from their edges), both proved; break_angle, "

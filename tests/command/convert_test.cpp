@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,47 @@ TEST(convert, says_what_it_cannot_do_and_leaves_nothing) {
           "not a positive length");
   refused({model("bracket.obj"), "-o", folder.file("a.step"), "--error", "1e-20"}, 4, "the least is");
   refused({model("bracket.obj"), "--scheme", "midedge", "-o", folder.file("a.step")}, 4, "midedge");
+}
+
+// Two cubes that overlap, and a part that is shorter than a millimetre: written, but not silently.
+TEST(convert, says_what_cad_programs_may_stumble_over) {
+  const TemporaryFolder folder;
+  std::string text = text_of(model("bracket.obj"));
+  const std::string alone = folder.file("alone.obj"), twice = folder.file("twice.obj"),
+                    file = folder.file("a.step");
+  std::ofstream(alone) << text;
+  std::string second;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "v") {
+      double x = 0, y = 0, z = 0;
+      words >> x >> y >> z;
+      second += "v " + std::to_string(x + 0.25) + ' ' + std::to_string(y + 0.125) + ' ' +
+                std::to_string(z + 0.0625) + '\n';
+    } else if (word == "f") {
+      second += "f";
+      for (int corner = 0; words >> corner;) second += ' ' + std::to_string(corner + 16);
+      second += '\n';
+    }
+  }
+  std::ofstream(twice) << text << second;
+  const Outcome clear = run_snug({"convert", alone, "-o", file, "--error", "1%", "--json"});
+  ASSERT_EQ(clear.status, 0) << clear.err;
+  EXPECT_EQ(json::parse(clear.out)["self_contact"], "clear");
+  EXPECT_EQ(clear.err.find("note"), std::string::npos) << clear.err;
+  const Outcome meets = run_snug({"convert", twice, "-o", file, "--error", "1%", "--json"});
+  ASSERT_EQ(meets.status, 0) << meets.err;
+  EXPECT_EQ(json::parse(meets.out)["self_contact"], "intersecting");
+  EXPECT_NE(meets.err.find("twice.obj meets itself, near "), std::string::npos) << meets.err;
+  const Outcome small = run_snug({"convert", alone, "-o", file, "--error", "1%", "--scale", "0.01"});
+  ASSERT_EQ(small.status, 0) << small.err;
+  EXPECT_NE(small.err.find("alone.obj is 0.02 mm long"), std::string::npos) << small.err;
+  EXPECT_EQ(run_snug({"convert", alone, "-o", file, "--error", "1%", "--scale", "0.01", "--units", "m"})
+                .err.find("long"),
+            std::string::npos);
 }
 
 TEST(convert, a_scene_is_an_assembly) {

@@ -107,8 +107,10 @@ TEST(units, convert_states_those_of_the_file) {
              "(0, 1, 0)]\n}\n");
   ASSERT_EQ(run_snug({"convert", box, "-o", file}).status, 0);
   EXPECT_NE(read_file(file).find("SI_UNIT(.CENTI.,.METRE.)"), std::string::npos);
-  expect_refused({"convert", box, "-o", folder.file("b.step"), "--units", "micron"}, 4,
-                 "STEP files are written in");
+  ASSERT_EQ(run_snug({"convert", box, "-o", file, "--units", "micron"}).status, 0);
+  EXPECT_NE(read_file(file).find("SI_UNIT(.MICRO.,.METRE.)"), std::string::npos);
+  ASSERT_EQ(run_snug({"convert", box, "-o", file, "--units", "foot"}).status, 0);
+  EXPECT_NE(read_file(file).find("LENGTH_MEASURE(0.3048)"), std::string::npos);
 }
 
 // --- scenes
@@ -150,6 +152,32 @@ TEST(units, a_file_of_several_meshes_is_a_scene) {
   write_text(folder.file("m.json"), R"({"parts":[{"mesh":"a.gltf"},{"mesh":"a.gltf","units":"mm"}]})");
   expect_refused({"distance", "--scene", folder.file("m.json"), "--limit", "100"}, 4,
                  "in mm: bring both to one unit");
+}
+
+// Parts and triangles within the error, in their places.
+TEST(units, a_scene_is_written_as_one_file) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out.3mf"), stl = folder.file("out.stl");
+  const Json scene{{"parts",
+                    {{{"name", "a"}, {"mesh", model("pin.obj")}, {"units", "inch"}},
+                     {{"name", "b"},
+                      {"mesh", model("pin.obj")},
+                      {"units", "inch"},
+                      {"place", {{"rotate", "z 30"}, {"move", {0.1, 5, 0}}}}}}}};
+  const std::string file = write_scene(folder.file("scene.json"), scene);
+  const Outcome written = run_snug({"tessellate", "--scene", file, "--error", "0.5mm", "-o", out, "--json"});
+  ASSERT_EQ(written.status, 0) << written.err;
+  const Json document = Json::parse(written.out);
+  EXPECT_EQ(document["parts"], 2);
+  ASSERT_EQ(document["shapes"].size(), 1u);
+  EXPECT_LE(document["shapes"][0]["error_bound"], 0.5 / 25.4);
+  const MeshAssembly read = read_assembly(out);
+  ASSERT_EQ(read.parts.size(), 2u);
+  EXPECT_EQ(read.parts[1].name, "b");
+  EXPECT_EQ(read.parts[1].pose, Motion::rotation_degrees({0, 0, 1}, 30).with_offset({0.1, 5, 0}));
+  EXPECT_EQ(read.meshes[0].metres_per_unit, 0.0254);
+  EXPECT_EQ(read.meshes[0].face_count(), document["shapes"][0]["triangles"]);
+  expect_refused({"tessellate", "--scene", file, "--error", "0.5mm", "-o", stl}, 2, "go to -o FILE.3mf");
 }
 
 TEST(units, a_broken_file_leaves_nothing) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <snug/io/zip.h>
+#include <snug/scene.h>
 #include <support/error.h>
 
 #include <testing/files.h>
@@ -129,6 +130,43 @@ TEST(three_mf, components_and_items_are_placed) {
   EXPECT_EQ(parts.parts[0].pose.apply({1, 0, 0}), (Point3{10, 1, 5}));
   EXPECT_EQ(parts.parts[0].mesh, parts.parts[1].mesh);
   EXPECT_EQ(parts.meshes[0].metres_per_unit, 0.0254);
+}
+
+// A mesh of one part is its object; of several parts it is a component of an object for each.
+TEST(three_mf, an_assembly_is_read_back_as_it_was_written) {
+  const ControlMesh mesh = parse_3mf(one(object(1, tetrahedron), item), "in.3mf");
+  MeshAssembly assembly{{mesh, mesh, mesh}, {}};
+  assembly.meshes[1].points[3] = {0.1, 1e-300, 1 / 3.0};
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto pose = [&] {
+    return Motion::translation({1e3 * unit(random), unit(random), 1e-9 * unit(random)}) *
+           Motion::rotation({unit(random), unit(random), 1}, 9 * unit(random));
+  };
+  const std::vector<std::string> names{"pin 1", "Schl\xc3\xbcssel <a> & \"b\"", "pin 2", "\xe2\x86\x92",
+                                       "as it is"};
+  const std::vector<std::uint32_t> of{0, 1, 0, 0, 2};
+  for (std::size_t p = 0; p < names.size(); ++p)
+    assembly.parts.push_back({names[p], of[p], p == 4 ? Motion() : pose()});
+  const MeshAssembly read = parse_assembly(format_assembly(assembly, "Out.3MF"), "out.3mf");
+  ASSERT_EQ(read.parts.size(), names.size());
+  EXPECT_EQ(read.meshes.size(), 3u);
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    EXPECT_EQ(read.parts[p].name, names[p]);
+    EXPECT_EQ(read.parts[p].pose.numbers(), assembly.parts[p].pose.numbers()) << p;
+    const ControlMesh &was = assembly.meshes[of[p]], &is = read.meshes[read.parts[p].mesh];
+    EXPECT_EQ(is.points, was.points);
+    EXPECT_EQ(is.face_vertices, was.face_vertices);
+    EXPECT_EQ(is.metres_per_unit, 0.0254);
+  }
+  assembly.meshes[2].metres_per_unit = 1;
+  const auto fault = [&](const char* path) {
+    return unreadable([&] { static_cast<void>(format_assembly(assembly, path)); });
+  };
+  EXPECT_EQ(fault("out.stl"), "out.stl: parts in their places are written to .3mf files only");
+  EXPECT_THROW(static_cast<void>(format_assembly(assembly, "out.3mf")), InputError);  // two units
+  assembly.parts[4].mesh = 3;
+  EXPECT_THROW(static_cast<void>(format_assembly(assembly, "out.3mf")), InputError);
 }
 
 TEST(three_mf, objects_may_be_in_other_files_of_the_package) {

@@ -138,6 +138,12 @@ namespace snug {
 /// Errors:    InputError (refused) for a unit that 3MF does not have, a face of one or two corners, more than 4 GiB.
 [[nodiscard]] std::string format_3mf(const ControlMesh& mesh, const std::string& name,
                                      const Notes& notes = {});
+/// Parts as items with their poses as they are; a mesh of several parts is one object, and a component of each of theirs.
+///
+/// Notes, errors: likewise; InputError (refused) also for meshes in different units.
+/// Requires:  meshes of parts exist.
+[[nodiscard]] std::string format_3mf(const MeshAssembly& assembly, const std::string& name,
+                                     const Notes& notes = {});
 
 /// Bytes before the first chunk of a binary glTF file, and of a chunk before its content.
 inline constexpr std::size_t glb_header_size = 12, glb_chunk_head_size = 8;

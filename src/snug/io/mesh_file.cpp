@@ -1,4 +1,5 @@
 #include <snug/mesh.h>
+#include <snug/scene.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -236,6 +237,22 @@ std::string format_mesh(const ControlMesh& mesh, const std::string& path, const 
   }
   monitor_of(run).checkpoint();
   return formatted(mesh, ending, path, notes, options.normals);
+}
+
+std::string format_assembly(const MeshAssembly& assembly, const std::string& path,
+                            const WriteOptions& options, const Run& run) {
+  if (lower_ending(path) != ".3mf") {
+    throw InputError(InputProblem::unreadable,
+                     path + ": parts in their places are written to .3mf files only");
+  }
+  for (const MeshAssembly::Part& part : assembly.parts) {
+    require_value(part.mesh < assembly.meshes.size(), "an assembly has a part whose mesh does not exist");
+  }
+  if (options.notes) {
+    for (const ControlMesh& mesh : assembly.meshes) note_dropped_tags(mesh, path, true, options.notes);
+  }
+  monitor_of(run).checkpoint();
+  return format_3mf(assembly, path, options.notes);
 }
 
 void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options,

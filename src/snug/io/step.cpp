@@ -11,21 +11,26 @@ namespace snug {
 namespace {
 
 struct UnitWords {
-  const char* own;  // what an SI unit is called, or none
-  double metres;
+  const char* si;         // of an SI unit
+  const char* name = "";  // else its name, and its length
+  double metres = 0;
 };
 UnitWords words_of(LengthUnit unit) {
   switch (unit) {
     case LengthUnit::millimetre:
-      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))", 1e-3};
+      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))"};
     case LengthUnit::centimetre:
-      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))", 1e-2};
+      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))"};
     case LengthUnit::metre:
-      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))", 1};
+      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))"};
+    case LengthUnit::micron:
+      return {"(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MICRO.,.METRE.))"};
+    case LengthUnit::foot:
+      return {nullptr, "FOOT", 0.3048};
     case LengthUnit::inch:
       break;
   }
-  return {nullptr, 0.0254};
+  return {nullptr, "INCH", 0.0254};
 }
 
 // Knots, each once, and how often it is there.
@@ -115,15 +120,15 @@ class StepWriter {
   }
   std::size_t length_unit() {
     const UnitWords words = words_of(options_.unit);
-    if (words.own != nullptr) return file_.add(words.own);
+    if (words.si != nullptr) return file_.add(words.si);
     const std::size_t metre = file_.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))");
     std::string factor;
     append_step_real(factor, words.metres);
-    const std::size_t inch =
+    const std::size_t length =
         file_.add("LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(", factor, "),", StepRef{metre}, ")");
     const std::size_t dimension = file_.add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");
-    return file_.add("(CONVERSION_BASED_UNIT('INCH',", StepRef{inch}, ")LENGTH_UNIT()NAMED_UNIT(",
-                     StepRef{dimension}, "))");
+    return file_.add("(CONVERSION_BASED_UNIT('", words.name, "',", StepRef{length},
+                     ")LENGTH_UNIT()NAMED_UNIT(", StepRef{dimension}, "))");
   }
   Product product(const std::string& text) {
     const std::string name = step_string(text);

@@ -7,7 +7,12 @@
 namespace snug {
 namespace {
 
-// The code points of a UTF-8 text; of bytes that are none each one by itself.
+void append_hex(std::string& text, std::uint32_t number, int digits) {
+  for (int k = digits - 1; k >= 0; --k) text += "0123456789ABCDEF"[(number >> (4 * k)) & 15u];
+}
+
+}  // namespace
+
 std::u32string code_points(std::string_view utf8) {
   std::u32string points;
   for (std::size_t i = 0; i < utf8.size();) {
@@ -23,22 +28,14 @@ std::u32string code_points(std::string_view utf8) {
   return points;
 }
 
-void append_hex(std::string& text, std::uint32_t number, int digits) {
-  for (int k = digits - 1; k >= 0; --k) text += "0123456789ABCDEF"[(number >> (4 * k)) & 15u];
-}
-
-}  // namespace
-
 void append_step_real(std::string& text, double x) {
-  std::string number;
-  append_real(number, x);
-  const std::size_t exponent = number.find_first_of("eE");
-  std::string mantissa = number.substr(0, exponent);
-  if (mantissa.find('.') == std::string::npos) mantissa += '.';
-  text += mantissa;
-  if (exponent == std::string::npos) return;
-  text += 'E';
-  text += number.substr(exponent + 1);
+  const std::size_t begin = text.size();
+  append_real(text, x);
+  std::size_t end = begin;
+  bool point = false;
+  for (; end < text.size() && text[end] != 'e'; ++end) point = point || text[end] == '.';
+  if (end < text.size()) text[end] = 'E';
+  if (!point) text.insert(end, 1, '.');
 }
 
 std::string step_string(std::string_view utf8) {
@@ -72,13 +69,15 @@ std::size_t StepText::point(const Point3& p) { return triple("CARTESIAN_POINT(''
 std::size_t StepText::direction(const Vector3& v) { return triple("DIRECTION('',(", v.x, v.y, v.z); }
 
 std::size_t StepText::triple(std::string_view entity, double x, double y, double z) {
-  std::string numbers;
-  append_step_real(numbers, x);
-  numbers += ',';
-  append_step_real(numbers, y);
-  numbers += ',';
-  append_step_real(numbers, z);
-  return add(entity, numbers, "))");
+  const auto append_numbers = [&] {
+    append_step_real(text_, x);
+    text_ += ',';
+    append_step_real(text_, y);
+    text_ += ',';
+    append_step_real(text_, z);
+    text_ += "))";
+  };
+  return add(entity, append_numbers);
 }
 
 void StepText::list(std::string& list, std::size_t number) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@ struct StepRef {
 
 /// Adds a real as ISO 10303-21 writes it, with a decimal point; it is read back as the same double.
 void append_step_real(std::string& text, double x);
+/// The code points of a UTF-8 text; bytes that are none are each one by themselves.
+[[nodiscard]] std::u32string code_points(std::string_view utf8);
 /// A quoted string; characters outside ASCII become \X2\...\X0\.
 [[nodiscard]] std::string step_string(std::string_view utf8);
 
@@ -40,6 +43,9 @@ class StepText {
 
  private:
   void append(std::string_view part) { text_ += part; }
+  template <class Writer>
+  requires std::invocable<const Writer&>
+  void append(const Writer& part) { part(); }
   void append(StepRef part) {
     text_ += '#';
     text_ += std::to_string(part.number);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <snug/io/step_text.h>
 #include <snug/io/xml.h>
 #include <snug/io/zip.h>
 #include <support/error.h>
@@ -332,16 +333,21 @@ class PackageReader {
 // --- writing
 
 void append_escaped(std::string& text, std::string_view name) {
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
+  for (const char32_t c : code_points(name)) {
     if (c == '<') {
       text += "&lt;";
     } else if (c == '&') {
       text += "&amp;";
     } else if (c == '"') {
       text += "&quot;";
+    } else if (c >= ' ' && c <= '~') {
+      text += static_cast<char>(c);
+    } else if (c < 0xa0 || (c >= 0xd800 && c < 0xe000) || c == 0xfffe || c >= 0xffff) {
+      text += '_';  // none that XML has, or none that editors show
     } else {
-      text += byte < ' ' || byte > '~' ? '_' : c;
+      text += "&#";
+      append_integer(text, static_cast<std::uint32_t>(c));
+      text += ';';
     }
   }
 }
@@ -361,51 +367,128 @@ std::string_view unit_of(const ControlMesh& mesh, const std::string& name, const
   throw InputError(InputProblem::refused, text + " metres; it has " + listed(all_names(units), "and"));
 }
 
-std::string model_text(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"";
-  text.append(unit_of(mesh, name, notes)).append("\" xml:lang=\"en-US\" xmlns=\"").append(core_namespace);
-  text += "\">\n<resources>\n<object id=\"1\" type=\"model\" name=\"";
-  append_escaped(text, std::filesystem::path(name).stem().string());
-  text += "\">\n<mesh>\n<vertices>\n";
-  text.reserve(text.size() + 70 * mesh.vertex_count() + 40 * mesh.face_vertices.size());
-  for (const Point3& point : mesh.points) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      text += std::array{"<vertex x=\"", "\" y=\"", "\" z=\""}[axis];
-      append_real(text, point[axis]);
-    }
-    text += "\"/>\n";
+// The root model of a package.
+class ModelWriter {
+ public:
+  ModelWriter(std::string_view unit, const std::string& name) : name_(name) {
+    text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"";
+    text_.append(unit).append("\" xml:lang=\"en-US\" xmlns=\"").append(core_namespace);
+    text_ += "\">\n<resources>\n";
   }
-  text += "</vertices>\n<triangles>\n";
-  bool polygons = false;
-  std::size_t degenerate = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto corners = mesh.face(FaceId(f));
+
+  /// An object; returns its id.
+  std::uint32_t add(const ControlMesh& mesh, std::string_view name) {
+    begin_object(name);
+    text_.reserve(text_.size() + 70 * mesh.vertex_count() + 40 * mesh.face_vertices.size());
+    text_ += "<mesh>\n<vertices>\n";
+    for (const Point3& point : mesh.points) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        text_ += std::array{"<vertex x=\"", "\" y=\"", "\" z=\""}[axis];
+        append_real(text_, point[axis]);
+      }
+      text_ += "\"/>\n";
+    }
+    text_ += "</vertices>\n<triangles>\n";
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) add_face(mesh.face(FaceId(f)), f);
+    text_ += "</triangles>\n</mesh>\n</object>\n";
+    return objects_;
+  }
+  /// An object that is another one, placed; returns its id.
+  std::uint32_t add(std::uint32_t object, std::string_view name, const Motion& pose) {
+    begin_object(name);
+    text_ += "<components>\n<component objectid=\"";
+    append_place(text_, object, pose);
+    text_ += "</components>\n</object>\n";
+    return objects_;
+  }
+  void build(std::uint32_t object, const Motion& pose) {
+    items_ += "<item objectid=\"";
+    append_place(items_, object, pose);
+  }
+
+  void write_notes(const Notes& notes) const {
+    if (!notes) return;
+    if (polygons_) notes(name_ + ": 3MF holds triangles only: faces with more corners are split into fans");
+    if (degenerate_ > 0) {
+      notes(name_ + ": " + std::to_string(degenerate_) +
+            " triangles that name a vertex twice are left out: 3MF has none");
+    }
+  }
+  [[nodiscard]] std::string finish() {
+    return std::move(text_.append("</resources>\n<build>\n").append(items_).append("</build>\n</model>\n"));
+  }
+
+ private:
+  void begin_object(std::string_view name) {
+    text_ += "<object id=\"";
+    append_integer(text_, ++objects_);
+    text_ += "\" type=\"model\"";
+    if (!name.empty()) {
+      text_ += " name=\"";
+      append_escaped(text_, name);
+      text_ += '"';
+    }
+    text_ += ">\n";
+  }
+
+  void add_face(std::span<const VertexId> corners, std::size_t face) {
     if (corners.size() < 3) {
-      throw InputError(InputProblem::refused, name + ": face " + std::to_string(f) + " has " +
+      throw InputError(InputProblem::refused, name_ + ": face " + std::to_string(face) + " has " +
                                                   std::to_string(corners.size()) + " corners");
     }
-    polygons = polygons || corners.size() > 3;
+    polygons_ = polygons_ || corners.size() > 3;
     for (std::size_t k = 2; k < corners.size(); ++k) {
       const std::array<VertexId, 3> triangle{corners[0], corners[k - 1], corners[k]};
       if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
-        ++degenerate;
+        ++degenerate_;
         continue;
       }
       for (std::size_t i = 0; i < 3; ++i) {
-        text += std::array{"<triangle v1=\"", "\" v2=\"", "\" v3=\""}[i];
-        append_integer(text, triangle[i].value());
+        text_ += std::array{"<triangle v1=\"", "\" v2=\"", "\" v3=\""}[i];
+        append_integer(text_, triangle[i].value());
       }
-      text += "\"/>\n";
+      text_ += "\"/>\n";
     }
   }
-  if (polygons && notes)
-    notes(name + ": 3MF holds triangles only: faces with more corners are split into fans");
-  if (degenerate > 0 && notes)
-    notes(name + ": " + std::to_string(degenerate) +
-          " triangles that name a vertex twice are left out: 3MF has none");
-  return text +
-         "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item "
-         "objectid=\"1\"/>\n</build>\n</model>\n";
+
+  // 3MF multiplies rows by matrices: it has the columns of ours.
+  static void append_place(std::string& text, std::uint32_t object, const Motion& pose) {
+    append_integer(text, object);
+    if (!(pose == Motion())) {
+      text += "\" transform=\"";
+      for (std::size_t column = 0; column < 4; ++column) {
+        for (std::size_t row = 0; row < 3; ++row) {
+          if (column + row > 0) text += ' ';
+          append_real(text, pose.numbers()[4 * row + column]);
+        }
+      }
+    }
+    text += "\"/>\n";
+  }
+
+  const std::string& name_;
+  std::string text_, items_;
+  std::uint32_t objects_ = 0;
+  bool polygons_ = false;
+  std::size_t degenerate_ = 0;
+};
+
+std::string package_of(std::string model, const std::string& name) {
+  ZipWriter archive;
+  archive.add(
+      "[Content_Types].xml",
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+      "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+      "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
+      "</Types>\n");
+  archive.add("_rels/.rels",
+              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+              "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+              "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+              "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n");
+  archive.add("3D/3dmodel.model", std::move(model));
+  return archive.finish(name);
 }
 
 }  // namespace
@@ -423,21 +506,36 @@ ControlMesh parse_3mf(std::string_view bytes, const std::string& name, const Not
 }
 
 std::string format_3mf(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
-  ZipWriter archive;
-  archive.add(
-      "[Content_Types].xml",
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
-      "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
-      "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
-      "</Types>\n");
-  archive.add("_rels/.rels",
-              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-              "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-              "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
-              "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n");
-  archive.add("3D/3dmodel.model", model_text(mesh, name, notes));
-  return archive.finish(name);
+  ModelWriter model(unit_of(mesh, name, notes), name);
+  model.build(model.add(mesh, std::filesystem::path(name).stem().string()), {});
+  model.write_notes(notes);
+  return package_of(model.finish(), name);
+}
+
+std::string format_3mf(const MeshAssembly& assembly, const std::string& name, const Notes& notes) {
+  std::vector<std::size_t> uses(assembly.meshes.size());
+  std::optional<std::string_view> unit;
+  for (const MeshAssembly::Part& part : assembly.parts) {
+    const ControlMesh& mesh = assembly.meshes[part.mesh];
+    if (!unit) unit = unit_of(mesh, name, notes);
+    if (mesh.metres_per_unit != assembly.meshes[assembly.parts[0].mesh].metres_per_unit)
+      throw InputError(InputProblem::refused, name + ": 3MF files are in one unit, the parts are not");
+    ++uses[part.mesh];
+  }
+  ModelWriter model(unit.value_or("millimeter"), name);
+  std::vector<std::uint32_t> objects(assembly.meshes.size());
+  for (const MeshAssembly::Part& part : assembly.parts) {
+    const bool shared = uses[part.mesh] > 1;
+    std::uint32_t& object = objects[part.mesh];
+    if (object == 0) object = model.add(assembly.meshes[part.mesh], shared ? "" : part.name);
+    if (shared) {
+      model.build(model.add(object, part.name, part.pose), {});
+    } else {
+      model.build(object, part.pose);
+    }
+  }
+  model.write_notes(notes);
+  return package_of(model.finish(), name);
 }
 
 }  // namespace snug
