@@ -291,7 +291,7 @@ TEST(hermite_face, equal_polynomials_have_no_distance) {
 TEST(hermite_face, distances_over_boxes_are_bounded) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> unit(-1, 1);
-  std::size_t boxes = 0, across = 0;
+  std::size_t boxes = 0, across = 0, beside = 0;
   double ratio = 0;
   for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::loop, 44)) {
     SCOPED_TRACE(c.name + ", " + testing::text_of(c.rules));
@@ -304,8 +304,11 @@ TEST(hermite_face, distances_over_boxes_are_bounded) {
       const bool lower = random() % 2 == 0;
       const auto interval = [&](std::uint64_t levels) {
         const int level = static_cast<int>(random() % levels);
-        const auto k = static_cast<double>(random() % (std::uint64_t{1} << level));
-        return std::pair(std::ldexp(k, -level), std::ldexp(k + 1, -level));
+        const std::uint64_t all = std::uint64_t{1} << level, k = random() % all;
+        // A dyadic one, or as many of these as may be.
+        const std::uint64_t end = random() % 2 == 0 ? k + 1 : k + 1 + random() % (all - k);
+        return std::pair(std::ldexp(static_cast<double>(k), -level),
+                         std::ldexp(static_cast<double>(end), -level));
       };
       const auto [u0, u1] = interval(6);
       const auto [v0, v1] = interval(6);
@@ -321,11 +324,11 @@ TEST(hermite_face, distances_over_boxes_are_bounded) {
         evaluator.points({&at, 1}, {&point, 1});
         return point.position - patch.origin;
       };
-      // About there, with one point far away.
+      // About there, with one point far away, often the one at the corner that is farthest from the diagonal.
       TensorPiece bicubic = bezier_piece(3);
       const Vector3 near = limit(lower ? u1 : u0, lower ? v0 : v1);
       std::fill_n(bicubic.points.begin(), 16, near);
-      Vector3& far = bicubic.points[random() % 16];
+      Vector3& far = bicubic.points[random() % 2 == 0 ? random() % 16 : lower ? 3 : 12];
       far = far + Vector3{unit(random), unit(random), unit(random)};
       take_largest(bicubic);
       const double bound = tree.distance({u0, u1, v0, v1}, bicubic, 0);
@@ -340,11 +343,13 @@ TEST(hermite_face, distances_over_boxes_are_bounded) {
       EXPECT_GE(bound * (1 + 1e-9) + 1e-12, farthest) << u0 << ' ' << u1 << ' ' << v0 << ' ' << v1;
       ++boxes;
       across += v1 > u0 && u1 > v0 ? 1 : 0;
+      beside += lower ? v0 < u0 && u0 < v1 && v1 < u1 : u0 < v0 && v0 < u1 && u1 < v1;
       ratio += bound / farthest;
     }
   }
   EXPECT_GT(boxes, testing::share(200));
   EXPECT_GT(across, boxes / 4);
+  EXPECT_GT(beside, boxes / 50);  // a triangle and two rectangles
   EXPECT_LT(ratio, 2 * static_cast<double>(boxes));
 }
 

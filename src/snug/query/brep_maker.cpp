@@ -113,10 +113,12 @@ void BrepMaker::require_spans(std::uint64_t least) const {
 
 Brep BrepMaker::run() {
   fit();
-  Brep brep = assembled();
+  Brep brep = *assembled(false);
   for (int round = 0; max_angle_ && brep.break_angle > *max_angle_ && round < most_angle_rounds; ++round) {
     if (!deepen_at_breaks(breaks_)) break;
-    brep = assembled();
+    std::optional<Brep> next = assembled(true);
+    if (!next) break;
+    brep = std::move(*next);
   }
   const bool reached =
       brep.error_bound <= back_.apply(error_) && (!max_angle_ || brep.break_angle <= *max_angle_);
@@ -124,8 +126,8 @@ Brep BrepMaker::run() {
   return brep;
 }
 
-Brep BrepMaker::assembled() {
-  prepare();
+std::optional<Brep> BrepMaker::assembled(bool again) {
+  if (!prepare(again)) return {};
   Brep brep;
   brep.faces.resize(drafts_.size());
   std::atomic<std::size_t> count{0};
@@ -287,8 +289,10 @@ double BrepMaker::break_of(const Brep& brep, const FaceJoint& joint, std::vector
     largest = std::max(largest, here);
     if (max_angle_ && here > *max_angle_) {
       const double middle = 0.5 * (breaks[k] + breaks[k + 1]);
-      where.push_back(place_of(a, middle));
-      where.push_back(place_of(b, b.end - ratio * (middle - a.begin)));
+      for (const bool first : {true, false}) {
+        where.push_back(first ? place_of(a, middle) : place_of(b, b.end - ratio * (middle - a.begin)));
+        where.back().angle = here / *max_angle_;
+      }
     }
   }
   return largest;

@@ -14,7 +14,7 @@ namespace snug {
 /// Share of the requested error for what is fitted; the rest is for rounding.
 inline constexpr double share_of_fits = 0.999;
 /// Rounds of splits towards a requested angle.
-inline constexpr int most_angle_rounds = 12;
+inline constexpr int most_angle_rounds = 16;
 
 /// Makes the boundary representation of one surface. Classes that follow know how its faces become B-spline surfaces; here they are
 /// joined.
@@ -28,17 +28,18 @@ class BrepMaker {
   [[nodiscard]] Brep run();
 
  protected:
-  /// A place on the border of a face: beside this quad, at this parameter of its side.
+  /// A tangent break on the border of a face: beside this quad, at this parameter of its side.
   struct Break {
     std::uint32_t quad;
     std::size_t side;
     double at;
+    double angle = 0;  // in largest angles that are allowed
   };
 
   /// Splits until faces are near enough, or the budget is spent; sets drafts_.
   virtual void fit() = 0;
-  /// Called before faces are made again.
-  virtual void prepare() {}
+  /// Called before faces are made, again where `again`: false if the budget does not allow it then.
+  [[nodiscard]] virtual bool prepare([[maybe_unused]] bool again) { return true; }
   /// Puts a face and its bound there.
   virtual void make_face(const FaceDraft& draft, Brep::Face& face) const = 0;
   /// Are faces here not known to be smooth?
@@ -63,7 +64,7 @@ class BrepMaker {
 
  private:
   [[nodiscard]] double scaled_error(const BrepOptions& options) const;
-  [[nodiscard]] Brep assembled();
+  [[nodiscard]] std::optional<Brep> assembled(bool again);
   void join(Brep& brep);
   [[nodiscard]] bool is_diagonal(const JointUse& use) const;
   [[nodiscard]] SplineCurve curve_of(const Brep& brep, const JointUse& use, bool backwards) const;

@@ -17,6 +17,8 @@ constexpr double share_of_curves = 0.4;     // of the error, for curves of edges
 constexpr std::size_t most_spans = 20'000;  // of a square of a face
 constexpr double budget_factor = 4;         // by which the error grows if spans do not suffice
 constexpr double same_jet = 0x1p-42;
+constexpr double least_span =
+    0x1p-20;  // of an edge, between knots that are made where faces meet at an angle
 
 // Faces of triangles of Loop's scheme.
 class TriangleBrepMaker : public BrepMaker {
@@ -144,7 +146,7 @@ class TriangleBrepMaker : public BrepMaker {
   }
 
   // If the spans of all faces exceed the budget, the error grows.
-  void prepare() override {
+  bool prepare(bool again) override {
     for (;;) {
       faces_.assign(drafts_.size(), {});
       std::atomic<std::uint64_t> spans{0};
@@ -165,9 +167,10 @@ class TriangleBrepMaker : public BrepMaker {
         monitor_.report(0.2 + 0.5 * static_cast<double>(count) / static_cast<double>(drafts_.size()));
       });
       spent_ = spent_ || far;
-      if (spans <= budget_) return;
-      reached_ *= budget_factor;
+      if (spans <= budget_) return true;
       spent_ = true;
+      if (again) return false;
+      reached_ *= budget_factor;
       fit_curves();
     }
   }
@@ -177,24 +180,19 @@ class TriangleBrepMaker : public BrepMaker {
   }
   [[nodiscard]] bool may_break(const FaceDraft&) const override { return true; }
 
-  // A knot of the edge's curve there, which both faces then have.
+  // Knots of the edge's curve there, which both faces then have: one, or at an end of the edge, where angles fall slowly, several.
   bool deepen_at_breaks(const std::vector<Break>& breaks) override {
     bool any = false;
-    std::vector<std::vector<double>> more(curves_.size());
+    std::vector<std::vector<std::pair<double, double>>> more(curves_.size());
     for (const Break& there : breaks) {
       const PatchSide& side = side_of_mesh({there.quad, there.side});
-      more[side.number].push_back(side.reversed ? 1 - there.at : there.at);
+      more[side.number].emplace_back(side.reversed ? 1 - there.at : there.at, there.angle);
     }
     for (std::size_t e = 0; e < curves_.size(); ++e) {
       if (more[e].empty()) continue;
       std::vector<double> knots;
       for (const HermiteCurve::Node& node : curves_[e].nodes) knots.push_back(node.t);
-      for (const double t : more[e]) {
-        const auto next = std::upper_bound(knots.begin(), knots.end(), t);
-        if (next == knots.begin() || next == knots.end() || *(next - 1) == t) continue;
-        knots.insert(next, 0.5 * (*(next - 1) + *next));
-        any = true;
-      }
+      for (const auto& [t, angle] : more[e]) any = split_at(t, angle, knots) || any;
       TriangleTree tree = tree_along(owners_[e]);
       const PatchSide& side = side_of_mesh(owners_[e]);
       if (side.reversed) {
@@ -204,6 +202,24 @@ class TriangleBrepMaker : public BrepMaker {
       put_curve(owners_[e], curve_with(tree, knots));
     }
     return any && !spent_;
+  }
+
+  static bool split_at(double t, double angle, std::vector<double>& knots) {
+    const auto next = std::upper_bound(knots.begin(), knots.end(), t);
+    if (next == knots.begin() || next == knots.end() || *(next - 1) == t) return false;
+    const double begin = *(next - 1), end = *next;
+    if (end - begin <= least_span) return false;
+    const bool first = begin == 0, last = end == 1;
+    const double halvings = first == last ? 1 : std::clamp(std::floor(std::log2(angle)), 1.0, 8.0);
+    std::vector<double> between;
+    double length = end - begin;
+    for (double k = 0; k < halvings && length > least_span; ++k) {
+      length *= 0.5;
+      between.push_back(last ? end - length : begin + length);
+    }
+    if (!last) std::reverse(between.begin(), between.end());
+    knots.insert(next, between.begin(), between.end());
+    return true;
   }
 
   double reached_;

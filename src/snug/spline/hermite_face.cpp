@@ -62,6 +62,27 @@ void fit_ends(HermiteCurve& curve, TriangleTree& tree, const std::array<bool, 2>
   }
 }
 
+bool is_near(const HermiteCurve& curve, TriangleTree& tree, double begin, double end, double error) {
+  return std::none_of(samples.begin(), samples.end(), [&](double share) {
+    const double t = begin + share * (end - begin);
+    return length_sq(curve.at(t).point - tree.limit(t, 0)) > error * error;
+  });
+}
+
+// Leaves out nodes without which the curve is as near: halving towards an end makes spans that are shorter than need be. Those next to an
+// extraordinary end stay.
+void drop_nodes(HermiteCurve& curve, TriangleTree& tree, double error) {
+  const std::size_t first = tree.jet(0, 0) ? 1 : 2, last = tree.jet(1, 0) ? 1 : 2;
+  for (std::size_t k = first; k + last < curve.nodes.size();) {
+    const HermiteCurve both{curve.origin, {curve.nodes[k - 1], curve.nodes[k + 1]}};
+    if (is_near(both, tree, both.nodes[0].t, both.nodes[1].t, error)) {
+      curve.nodes.erase(curve.nodes.begin() + static_cast<std::ptrdiff_t>(k));
+    } else {
+      ++k;
+    }
+  }
+}
+
 }  // namespace
 
 HermiteCurve::Node HermiteCurve::at(double t) const {
@@ -106,13 +127,13 @@ HermiteCurve curve_near(TriangleTree& tree, double error) {
     std::vector<double> more = knots;
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
       const double begin = knots[k], length = knots[k + 1] - begin;
-      const bool far = std::any_of(samples.begin(), samples.end(), [&](double share) {
-        const double t = begin + share * length;
-        return length_sq(curve.at(t).point - tree.limit(t, 0)) > error * error;
-      });
-      if (far && length > least_span) more.push_back(begin + 0.5 * length);
+      if (length > least_span && !is_near(curve, tree, begin, knots[k + 1], error))
+        more.push_back(begin + 0.5 * length);
     }
-    if (more.size() == knots.size()) return curve;
+    if (more.size() == knots.size()) {
+      drop_nodes(curve, tree, error);
+      return curve;
+    }
     sort_unique(more);
     knots = std::move(more);
   }

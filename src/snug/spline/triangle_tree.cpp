@@ -407,13 +407,13 @@ class TriangleTree::Search {
         visit(children + static_cast<std::uint32_t>(child), half_of_child(half, child), quarter);
     }
   }
-  // A part of a square through which the diagonal runs: of two dyadic intervals the shorter one, twice, is a square on it, and what
-  // else lies in the half is a rectangle.
+  // A part of a square through which the diagonal runs: half of a square on it, and at most two rectangles of the half. Below it:
   //
-  //      .-------.-----------.
-  //      |     / |           |
-  //      |   /   |           |
-  //      '-------'-----------'
+  //      .-------.-----.
+  //      |     / |     |
+  //      |   /   |     |
+  //      :-------:     |
+  //      '-------'-----'
   void visit_polynomial(const QuarticTriangle& quartic, SquareHalf half, const ParameterBox& square,
                         const ParameterBox& common) {
     const double low = std::max(common.u0 - square.u0, common.v0 - square.v0),
@@ -422,10 +422,10 @@ class TriangleTree::Search {
     largest_ = std::max(
         largest_, distance_bound(on_diagonal(quartic, half, low / size, high / size), on_part(middle), half));
     const bool lower = half == SquareHalf::lower;
-    for (const ParameterBox& rest : {lower ? ParameterBox{middle.u1, common.u1, middle.v0, middle.v1}
-                                           : ParameterBox{common.u0, middle.u0, middle.v0, middle.v1},
+    for (const ParameterBox& rest : {lower ? ParameterBox{middle.u1, common.u1, common.v0, common.v1}
+                                           : ParameterBox{common.u0, common.u1, middle.v1, common.v1},
                                      lower ? ParameterBox{middle.u0, middle.u1, common.v0, middle.v0}
-                                           : ParameterBox{middle.u0, middle.u1, middle.v1, common.v1}}) {
+                                           : ParameterBox{common.u0, middle.u0, middle.v0, middle.v1}}) {
       if (rest.u0 < rest.u1 && rest.v0 < rest.v1)
         largest_ = std::max(largest_, distance_bound(quartic, on_part(rest), half, within(square, rest)));
     }
