@@ -20,7 +20,7 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string mesh, scene, error, name, protocol = "ap242";
+  std::string mesh, scene, error, name, protocol = "ap242", continuity = "g0";
   double max_angle = 0;
   bool nearest_rigid = false;
 };
@@ -167,6 +167,8 @@ std::string units_of_files(const Job& job) {
   return unit;
 }
 
+constexpr double angle_of_g1 = 0.1;  // degrees
+
 // Below this CAD programs lose their way: they take points within 1e-7 mm for one.
 constexpr double least_millimetres = 1;
 
@@ -209,6 +211,7 @@ ExitStatus run(Options options) {
   if (options.json && options.output == "-")
     throw UsageError("convert: --json and -o - both want standard output");
   if (!options.error.empty()) static_cast<void>(parse_length(options.error, "--error"));
+  if (options.continuity == "g1" && options.max_angle == 0) options.max_angle = angle_of_g1;
   Job job = read_all(options, stopped_by_interrupts());
   options.units = units_of_files(job);
   note_small_parts(options, job);
@@ -259,10 +262,16 @@ Command convert_command() {
   list.add(Group::own, "--error LENGTH", &options->error,
            "Largest distance between limit surface and faces; mesh units, percent, or with a unit, such as "
            "0.01mm "
-           "(default 0.01%)");
+           "(default 0.01%)")
+      .formerly("--tolerance");
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle between faces across edges where the surface is smooth; 0 for any")
       .between(0, 90);
+  list.add(Group::own, "--continuity NAME", &options->continuity,
+           "g1: faces meet at 0.1 degrees at most where the surface is smooth, unless --max-angle says "
+           "another "
+           "angle; g0: at any angle")
+      .one_of({"g0", "g1"});
   list.add(Group::own, "--name NAME", &options->name, "Name of the part or assembly; default: the file's");
   list.add(Group::own, "--protocol NAME", &options->protocol, "Application protocol of the STEP file")
       .one_of({"ap242", "ap214"});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 
@@ -88,7 +89,21 @@ std::vector<std::vector<double>> read_path(const Robot& robot, const Options& op
   return positions;
 }
 
+// What other commands take by --scene.
+void refuse_scenes(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(), lower_case);
+  for (const char* const scene : {".json", ".3mf", ".gltf", ".glb", ".usda"}) {
+    if (ending != scene) continue;
+    throw UsageError(
+        "scene: " + path +
+        " is a scene of parts: collide, distance, tessellate, convert, envelope and view take it by "
+        "--scene; this command takes robots (URDF)");
+  }
+}
+
 Robot load_robot(const Options& options) {
+  refuse_scenes(options.robot);
   RobotOptions how{.visual = options.visual, .root = options.root, .notes = notes_for(options)};
   for (const std::string& package : options.packages) {
     const auto equals = package.find('=');

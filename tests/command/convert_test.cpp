@@ -59,7 +59,22 @@ TEST(convert, says_what_it_cannot_do_and_leaves_nothing) {
   refused({model("bracket.obj"), "--scheme", "midedge", "-o", folder.file("a.step")}, 4, "midedge");
 }
 
-// Two cubes that overlap, and a part that is shorter than a millimetre: written, but not silently.
+// By its usual name, and by the angle.
+TEST(convert, makes_faces_meet_smoothly) {
+  const TemporaryFolder folder;
+  const auto angle = [&](const std::vector<std::string>& more) -> double {
+    std::vector<std::string> words{"convert", model("bracket.obj"), "-o", folder.file("a.step"), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_snug(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out)["break_angle"];
+  };
+  EXPECT_GT(angle({"--continuity", "g0"}), 0.1);
+  EXPECT_LE(angle({"--continuity", "g1"}), 0.1);
+  EXPECT_LE(angle({"--max-angle", "0.05"}), 0.05);
+}
+
+// Two parts that overlap, and one that is shorter than a millimetre: written, but not silently.
 TEST(convert, says_what_cad_programs_may_stumble_over) {
   const TemporaryFolder folder;
   std::string text = text_of(model("bracket.obj"));

@@ -97,6 +97,7 @@ TEST(robot_scene, faults_are_one_line) {
           "a.txt:2: 2 positions for 1 joints");
   refused({"scene", robot, "--path", write_text(folder.file("b.txt"), "elbow\n1\n")}, 3, "two or more lines");
   refused({"scene", folder.file("none.urdf")}, 3, "none.urdf");
+  refused({"scene", folder.file("assembly.json")}, 2, "take it by --scene; this command takes robots");
   const std::string missing = write_text(folder.file("m.urdf"),
                                          "<robot name='r'><link name='a'><collision><geometry><mesh "
                                          "filename='no.stl'/></geometry></collision></link></robot>");
