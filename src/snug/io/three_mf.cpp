@@ -345,9 +345,7 @@ void append_escaped(std::string& text, std::string_view name) {
     } else if (c < 0xa0 || (c >= 0xd800 && c < 0xe000) || c == 0xfffe || c >= 0xffff) {
       text += '_';  // none that XML has, or none that editors show
     } else {
-      text += "&#";
-      append_integer(text, static_cast<std::uint32_t>(c));
-      text += ';';
+      append_utf8(text, c);  // lib3mf takes no references to characters
     }
   }
 }

@@ -16,6 +16,8 @@ bool ends_name(char c) {
          c == '"' || c == '\'';
 }
 
+}  // namespace
+
 void append_utf8(std::string& text, std::uint32_t code) {
   const auto byte = [&](std::uint32_t bits) { text += static_cast<char>(bits); };
   if (code < 0x80) {
@@ -34,8 +36,6 @@ void append_utf8(std::string& text, std::uint32_t code) {
     byte(0x80 | (code & 0x3f));
   }
 }
-
-}  // namespace
 
 std::string_view XmlReader::prefix_of(std::string_view name) {
   const std::size_t colon = name.find(':');
