@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <picture/polyhedron.h>
 
@@ -247,7 +248,8 @@ val measured(const Part& part, const val& options) {
 // A STEP file of B-spline faces.
 val step_of(const Part& part, const val& options) {
   return guarded([&] {
-    constexpr std::array units{"mm", "cm", "m", "inch", "foot", "micron"}, protocols{"ap242", "ap214"};
+    constexpr std::array units{"mm", "cm", "m", "inch", "foot", "micron"};
+    constexpr std::array protocols{"ap242", "ap214"};
     StepOptions file;
     file.name = option<std::string>(options, "name").value_or("part");
     const auto one_of = [&](const char* name, std::span<const char* const> words) {
