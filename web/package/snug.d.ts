@@ -510,7 +510,7 @@ export interface Surface {
   /** The bytes of a file of the control mesh; the ending of the name says which: .obj, .off, .ply, .stl, .usda or .glb. */
   write(name?: string): Uint8Array;
   /** A STEP file of B-spline faces that share their edges, for CAD; schemes of quads. error: 0.01 % of the size; units: mm. */
-  step(options?: { error?: number; maxAngle?: number; name?: string; units?: "mm" | "cm" | "m" | "inch"; protocol?: "ap242" | "ap214" } & CallOptions): Brep;
+  step(options?: { error?: number; maxAngle?: number; name?: string; units?: "mm" | "cm" | "m" | "inch" | "foot" | "micron"; protocol?: "ap242" | "ap214" } & CallOptions): Brep;
   delete(): void;
 }
 
