@@ -1,6 +1,4 @@
-// Encloses the limit surface of a mesh whose control points move, frame by frame.
-//
-//   03_follow_a_moving_mesh MESH
+// Encloses the limit surface of a mesh whose control points move, frame by frame: 03_follow_a_moving_mesh MESH
 
 #include <algorithm>
 #include <cmath>

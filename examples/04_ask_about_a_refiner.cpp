@@ -1,6 +1,4 @@
-// Takes a mesh from OpenSubdiv and encloses its limit surface.
-//
-//   04_ask_about_a_refiner
+// Takes a mesh from OpenSubdiv and encloses its limit surface: 04_ask_about_a_refiner
 
 #include <cstdio>
 #include <memory>

@@ -1,6 +1,4 @@
-// A watertight mesh around a limit surface, at least a clearance and at most an error away, and its volume.
-//
-//   12_envelope MESH OUT
+// A watertight mesh around a limit surface, at least a clearance and at most an error away, and its volume: 12_envelope MESH OUT
 
 #include <cstdio>
 #include <exception>

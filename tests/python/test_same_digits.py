@@ -1,23 +1,23 @@
-"""Questions of every kind, random ones, at the command and in Python: members of one name have the same digits.
+"""Questions of every kind, at the command and in Python: members of one name have the same digits.
 
-A thousand questions of each kind that the command takes by files; of others SNUG_QUESTIONS (2) of each surface.
+SNUG_QUESTIONS (12) of each, asked by tests/doors/ask.py, or those that it has left in the file SNUG_ANSWERS.
 """
 
+import functools
+import json
 import os
+import subprocess
+import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from conftest import ROOT
+from test_command import COMMAND
 
 import snug
-from conftest import MODELS
-from test_command import COMMAND, output_of, text
 
 pytestmark = pytest.mark.skipif(not os.path.exists(COMMAND), reason="the command is not built")
-
-MANY = 1000
-FEW = int(os.environ.get("SNUG_QUESTIONS", 2))
-PAIRS = [("bracket", "pin", "auto"), ("ring", "star", "auto"), ("pawn", "bust", "auto"), ("bracket", "pin", "doo-sabin"), ("star", "ring", "flat")]
-ALONE = [("bracket", "auto"), ("star", "auto"), ("pawn", "auto"), ("pin", "bilinear"), ("bracket", "midedge"), ("ring", "flat")]
 
 
 def plain(value):
@@ -33,128 +33,106 @@ def plain(value):
     return value.item() if isinstance(value, np.generic) else value
 
 
-def told(document, name):
-    value = document[name]
-    if name == "contained":
-        return -1 if value is None else "ab".index(value)
-    return value
-
-
-def same(document, answer, least=3):
-    """Members that both have; at least so many."""
+def same(document, answer):
+    """Compares the members that both have; how many?"""
     compared = 0
-    for name in document:
-        member = "face" if name == "vertex" else name
-        if name.endswith("_at") or not hasattr(type(answer), member):
+    for i, at in enumerate(document.get("witness_at") or [] if hasattr(answer, "faces") else []):
+        here = (answer.faces[i], answer.corners[i], *answer.parameters[i])
+        assert here[0] == -1 if at is None else here == (at.get("face", at.get("vertex")), at.get("corner", 0), at["u"], at["v"])
+    for name, ought in document.items():
+        members = answer if isinstance(answer, dict) else dir(type(answer))
+        if name.endswith("_at") or name not in members:
             continue
-        here, ought = getattr(answer, member), told(document, name)
-        if isinstance(ought, list) and (type(here).__module__ == "snug" or (ought and isinstance(ought[0], dict))):
+        here = answer[name] if isinstance(answer, dict) else getattr(answer, name)
+        if name == "contained":
+            ought = -1 if ought is None else "ab".index(ought)
+        if isinstance(ought, dict) and not isinstance(here, dict):
+            compared += same(ought, here)
+        elif isinstance(ought, list) and (type(here).__module__ == "snug" or (ought and isinstance(ought[0], dict))):
             assert len(ought) == len(here)
-            for column in ought[0] if ought and not isinstance(here, (list, np.ndarray)) else ():
+            if isinstance(here, list):
+                compared += sum(same(one, answer) for one, answer in zip(ought, here))
+                continue
+            for column in ought[0] if ought and not isinstance(here, np.ndarray) else ():
                 if hasattr(type(here), column) and not column.endswith("_at") and column != "contacts":
                     assert plain([each[column] for each in ought]) == plain(getattr(here, column)), (name, column)
-        elif ought is None and name.startswith("witness"):
-            assert np.isnan(here).all()
+        elif name in ("positions", "triangles"):
+            assert ought == np.ravel(here).tolist(), name
+        elif ought is None and (name.startswith("witness") or name in ("normal", "centroid", "inertia", "volume")):
+            assert here is None or np.isnan(here).all()
         else:
             assert plain(here) == ought, name
         compared += 1
-    assert compared >= least, (compared, list(document))
+    return compared
 
 
-def poses(size, count, seed):
-    random = np.random.default_rng(seed)
-    all_of_them = np.tile(np.eye(4), (count, 1, 1))
-    for pose in all_of_them:
-        q, r = np.linalg.qr(random.normal(size=(3, 3)))
-        q = q * np.sign(np.diag(r))
-        q[:, 0] *= np.sign(np.linalg.det(q))
-        pose[:3, :3] = q if random.random() < 0.8 else np.eye(3)
-        pose[:3, 3] = random.uniform(-1, 1, 3) * size * random.choice([0.3, 1, 2])
-    return all_of_them
+@functools.lru_cache(16)
+def surface_of(file, scheme):
+    return snug.read(file, **({} if scheme == "auto" else {"scheme": scheme}))
 
 
-def surfaces(*names, scheme):
-    return [snug.read(MODELS / f"{name}.obj", **({} if scheme == "auto" else {"scheme": scheme})) for name in names]
+def of_pair(line, a, b):
+    ask, options = getattr(snug, line["ask"]), dict(line["options"])
+    if "path" in line:
+        return ask(a, None, b, snug.Trajectory.through([np.reshape(pose, (3, 4)) for pose in line["path"]]), **options)
+    if line["ask"] == "collide":
+        options.update(measure=True, prove_contact=True)
+    return ask(a, b, pose_b=np.reshape(line["pose"], (3, 4)), **options)
 
 
-@pytest.mark.parametrize("names", PAIRS)
-def test_pairs(names, tmp_path):
-    a, b = surfaces(*names[:2], scheme=names[2])
-    files = [MODELS / f"{name}.obj" for name in names[:2]]
-    how = ["--scheme", names[2]]
-    placed = poses(max(a.size, b.size), max(MANY // len(PAIRS), FEW + 2), 1)
-    (tmp_path / "poses").write_text("".join(text(pose) + "\n" for pose in placed))
-    for question, answers in (
-        ("collide", snug.collide(a, b, pose_b=placed, measure=True, prove_contact=True)),
-        ("distance", snug.distance(a, b, pose_b=placed)),
-    ):
-        document = output_of(question, *files, *how, "--poses", tmp_path / "poses")
-        assert len(document["results"]) == len(placed)
-        for one, answer in zip(document["results"], answers):
-            same(one, answer, 5)
-    for i in range(FEW):
-        pose = text(placed[i])
-        same(output_of("collide", *files, *how, "--place-b", pose, "--all"), snug.contacts(a, b, pose_b=placed[i]))
-        (tmp_path / "path").write_text("".join(text(pose) + "\n" for pose in placed[i : i + 3]))
-        moving = [*files, *how, "--path-b", tmp_path / "path"]
-        try:
-            path = snug.Trajectory.through(placed[i : i + 3])
-        except snug.PoseError:
-            continue
-        margin = 0.01 * i
-        same(output_of("time-of-contact", *moving, "--margin", margin), snug.time_of_contact(a, None, b, path, margin=margin), 7)
-        same(output_of("clearance", *moving, "--absolute", "2%", "--relative", 0.2), snug.clearance(a, None, b, path, absolute="2%", relative=0.2), 8)
-        if a.is_closed and b.is_closed:
-            same(output_of("collide", *files, *how, "--place-b", pose, "--solid", "--penetration")["penetration"], snug.penetration(a, b, pose_b=placed[i]))
+def of_one(line, surface, folder):
+    ask, options, document = line["ask"], line["options"], line["document"]
+    if ask == "contains":
+        found = surface.contains(*line["args"])
+        assert document["inside"] == (True if found.inside else False if found.outside else None)
+    elif ask == "ray":
+        hits = surface.ray(*line["args"], query="all")
+        for member in ("t", "certified", "side", "point", "error", "u", "v"):
+            assert [hit[member] for hit in document["hits"]] == plain(getattr(hits, member)), member
+        return hits
+    elif ask == "evaluate":
+        face, u, v, corner = line["args"]
+        return surface.evaluate(face, u, v, corner=corner)
+    elif ask == "limit_to_faces":
+        assert document["limit_to_faces"] == surface.limit_to_faces()
+    elif ask == "bound":
+        bounds = surface.bound(**options)
+        for member in ("level", "base", "radius", "lower", "upper", "corners"):
+            assert [each[member] for each in document["enclosures"]] == plain(getattr(bounds, member)), member
+        return bounds
+    elif ask == "deviation":
+        triangles = line["candidate"]
+        mesh = SimpleNamespace(vertices=np.reshape(triangles["positions"], (-1, 3)), faces=np.reshape(triangles["triangles"], (-1, 3)))
+        return snug.deviation(surface, mesh, **options)
+    elif ask == "subdivided":
+        assert document["positions"] == surface.subdivided(options["level"]).vertices.ravel().tolist()
+    elif ask == "step":
+        path = folder / f"{os.path.basename(line['files'][0])[:-4]}.step"  # the part's name is the file's
+        made = surface.write_step(path, **options)
+        text = path.read_text()
+        assert document["text"] == text[text.index("DATA;") :]
+        return made
+    elif ask in ("closest_point", "signed_distance"):
+        return getattr(surface, ask)(*line["args"])
+    else:
+        return getattr(surface, ask)(**options)
+    return None
 
 
-@pytest.mark.parametrize("name, scheme", ALONE)
-def test_surfaces(name, scheme, tmp_path):
-    (surface,) = surfaces(name, scheme=scheme)
-    file, how = MODELS / f"{name}.obj", ["--scheme", scheme]
-    random = np.random.default_rng(2)
-    points = random.normal(size=(MANY // len(ALONE), 3)) * surface.size
-    rows = "".join(" ".join(map(repr, p)) + "\n" for p in points.tolist())
-    near = surface.closest_point(points)
-    for one, answer in zip(output_of("closest", file, *how, "--points", "-", stdin=rows)["results"], near):
-        same(one, answer, 6)
-    if surface.is_closed:
-        signed, inside = surface.signed_distance(points), surface.contains(points)
-        for i, one in enumerate(output_of("closest", file, *how, "--points", "-", "--signed", stdin=rows)["results"]):
-            assert one["signed_distance"] == plain(signed[i].distance)
-            assert one["inside"] == (True if inside.inside[i] else False if inside.outside[i] else None)
-    towards = near.point - points
-    rays = "".join(" ".join(map(repr, o + d)) + "\n" for o, d in zip(points.tolist(), towards.tolist()))
-    hits = surface.ray(points, towards, query="all")
-    flat = [(i, hit) for i, one in enumerate(output_of("ray", file, *how, "--rays", "-", "--all", stdin=rays)["results"]) for hit in one["hits"]]
-    assert [i for i, _ in flat] == hits.ray.tolist()
-    for member in ("t", "certified", "side", "point", "error", "u", "v", "normal"):
-        assert [hit[member] for _, hit in flat] == plain(getattr(hits, member)), member
-    at = near[: 50 * FEW]
-    places = "".join(f"{f} {u!r} {v!r} {c}\n" for f, u, v, c in zip(at.face.tolist(), at.u.tolist(), at.v.tolist(), at.corner.tolist()))
-    if surface.scheme in ("loop", "flat"):
-        places = "".join(" ".join(line.split()[:3]) + "\n" for line in places.splitlines())
-    for one, answer in zip(output_of("eval", file, *how, "--at", "-", stdin=places)["points"], surface.evaluate(at.face, at.u, at.v, at.corner)):
-        same(one, answer, 4)
-    same(output_of("measure", file, *how), surface.measure(), 6)
-    same(output_of("self-contact", file, *how), surface.self_contact(), 4)
-    bounds = surface.bound(error="3%")
-    document = output_of("bound", file, *how, "--error", "3%")
-    assert [document["outcome"], document["max_radius"]] == [bounds.outcome, bounds.max_radius]
-    for member in ("level", "base", "radius", "lower", "upper", "corners"):
-        assert [each[member] for each in document["enclosures"]] == plain(getattr(bounds, member)), member
-    if FEW < 3 and (name, scheme) != ("pin", "bilinear"):
-        return  # what takes longest
-    apart = snug.deviation(surface, surface.tessellate("1%"), absolute="0.1%")
-    triangles = tmp_path / "triangles.obj"
-    output_of("tessellate", file, *how, "--error", "1%", "-o", triangles)
-    written = snug.read(triangles, scheme="flat")
-    assert plain(written.vertices) == plain(surface.tessellate("1%").vertices)
-    document = output_of("deviation", file, triangles, *how, "--absolute", "0.1%")
-    assert [document["from_surface"], document["from_candidate"]] == [plain(apart.from_surface.distance), plain(apart.from_candidate.distance)]
-    finer = tmp_path / "finer.obj"
-    output_of("subdivide", file, *how, "--level", 1, "-o", finer)
-    assert plain(snug.read(finer, scheme="bilinear").vertices) == plain(surface.subdivided(1).vertices)
-    around = tmp_path / "around.obj"
-    document = output_of("envelope", file, *how, "--error", "10%", "-o", around)
-    assert plain(snug.read(around, scheme="flat").vertices) == plain(surface.envelope("10%").vertices) and document["outcome"] == "complete"
+def test_questions_of_every_kind(tmp_path):
+    answers = os.environ.get("SNUG_ANSWERS", tmp_path / "answers.jsonl")
+    if "SNUG_ANSWERS" not in os.environ:
+        subprocess.run([sys.executable, ROOT / "tests/doors/ask.py", COMMAND, os.environ.get("SNUG_QUESTIONS", "12"), tmp_path], check=True)
+    counts = {}
+    with open(answers) as file:
+        for number, line in enumerate(map(json.loads, file), 1):
+            try:
+                surfaces = [surface_of(path, line["scheme"]) for path in line["files"]]
+                answer = of_pair(line, *surfaces) if len(surfaces) == 2 else of_one(line, *surfaces, tmp_path)
+                if answer is not None:
+                    assert same(line["document"], answer) >= 2
+            except BaseException as error:
+                raise AssertionError(f"line {number}, {line['ask']} {line['files']} {line['scheme']}: {error}") from error
+            counts[line["ask"]] = counts.get(line["ask"], 0) + 1
+    print(counts)
+    assert len(counts) == 21 and min(counts.values()) >= 10

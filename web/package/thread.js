@@ -33,9 +33,13 @@ async function answer({ start, id, target, name, args, watch }) {
     const snug = await ready;
     const all = args.map(kept);
     if (watch) all.push({ ...all.pop(), progress: (done) => port.postMessage({ id, done }) });
+    if (name === "delete") {
+      objects.get(target)?.delete();
+      objects.delete(target);
+      return port.postMessage({ id });
+    }
     if (target !== null && !objects.has(target)) throw new TypeError("this object has been deleted");
     const result = target === null ? snug[name](...all) : objects.get(target)[name](...all);
-    if (name === "delete") objects.delete(target);
     if (result instanceof snug.Surface || result instanceof snug.Robot) return port.postMessage({ id, result: keep(result, id) });
     if (name === "readAssembly") return port.postMessage({ id, result: keepParts(result, id) });
     port.postMessage({ id, result }, [...new Set(buffers(result))]);

@@ -28,5 +28,6 @@ export type SnugInWorker = { [Name in keyof SnugModule]: Later<SnugModule[Name]>
   /** Ends the worker. */
   close(): Promise<void>;
 };
-/** Starts a worker of the package's own, where a page or Node has them; options as in Snug(). */
-export default function SnugWorker(options?: { wasm?: ArrayBuffer | Uint8Array; simd?: boolean }): SnugInWorker;
+/** Starts workers of the package's own, where a page or Node has them; options as in Snug(). threads (1): collideMany() and distanceMany() share
+ *  their poses out to so many, another call goes to the one with the least to do; each holds all surfaces. */
+export default function SnugWorker(options?: { wasm?: ArrayBuffer | Uint8Array; simd?: boolean; threads?: number }): SnugInWorker;

@@ -8,6 +8,8 @@ import { tmpdir } from "node:os";
 import { dirname, extname, join, resolve } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { compare, holdAll } from "../../tests/doors/answers.mjs";
+import { linesOf } from "../../tests/doors/ask.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const command = resolve(process.env.SNUG ?? join(root, "build/release/bin/snug"));
@@ -297,69 +299,9 @@ test("asks about itself, motions, rays, envelopes and deviations as the native l
   assert.ok(pin.closestPoint(there.point, { absolute: 1e-9 }).distance[0] <= 1e-9 && there.normal.length === 3);
 });
 
-// Members of one name, in the spelling of each door: `own` has at least so many of the command's.
-function same_members(own, native, least, what) {
-  let compared = 0;
-  const camel = (name) => name.replace(/_([a-z])/g, (_, letter) => letter.toUpperCase());
-  // Points stand in flat arrays here.
-  const numbers = (list) => (list.flat().every((x) => x === null || typeof x === "number") ? list.flat() : list);
-  const plain = (x) => {
-    if (x === Infinity || x === undefined) return null;
-    if (ArrayBuffer.isView(x)) return [...x];
-    if (Array.isArray(x)) return numbers(x.map(plain));
-    if (x === null || typeof x !== "object") return x;
-    return Object.fromEntries(Object.entries(x).filter(([key]) => !key.endsWith("At") && key !== "contacts" && !/^(patches|a|b|part_[ab])$/.test(key)).map(([key, each]) => [key, plain(each)]));
-  };
-  const spelled = (x) => Array.isArray(x) ? numbers(x.map(spelled)) : x === null || typeof x !== "object" ? x
-    : Object.fromEntries(Object.entries(x).filter(([key]) => !key.endsWith("_at") && key !== "contacts" && !/^(patches|a|b|part_[ab])$/.test(key)).map(([key, each]) => [camel(key), spelled(each)]));
-  for (const [name, value] of Object.entries(native)) {
-    if (!(camel(name) in own) || name.endsWith("_at")) continue;
-    const ought = name === "contained" ? (value === null ? null : "ab".indexOf(value)) : spelled(value);
-    assert.deepStrictEqual(plain(own[camel(name)]), ought, `${what}: ${name}`);
-    ++compared;
-  }
-  assert.ok(compared >= least, `${what}: ${compared} members`);
-}
-const few = Number(process.env.SNUG_QUESTIONS ?? 3);
-
 test("gives the digits of the native library to questions of every kind", () => {
-  for (const [name_a, name_b, scheme] of [["bracket.obj", "pin.obj", "auto"], ["star.obj", "ring.obj", "auto"], ["bracket.obj", "pin.obj", "doo-sabin"], ["star.obj", "ring.obj", "flat"]]) {
-    const [a, b] = [model(name_a, { scheme }), model(name_b, { scheme })], files = [join(models, name_a), join(models, name_b), "--scheme", scheme];
-    const list = poses(Math.max(a.size, b.size), few + 2), size = Math.max(a.size, b.size), path = join(scratch, "path.txt");
-    for (let i = 0; i < few; ++i) {
-      const what = `${name_a} ${name_b} ${scheme}, ${i}`, place = ["--place-b", list[i].join(" ")], motionB = list.slice(i, i + 3);
-      same_members(snug.contacts(a, b, { poseB: list[i] }), ask("collide", ...files, ...place, "--all"), 5, what);
-      writeFileSync(path, motionB.map((pose) => pose.join(" ")).join("\n") + "\n");
-      let moving;
-      try {
-        moving = snug.timeOfContact(a, b, { motionB, margin: 0.01 * i * size });
-      } catch (error) {
-        assert.equal(error.problem, "pose", error.message); // half a turn
-        continue;
-      }
-      const margin = ask("time-of-contact", ...files, "--path-b", path, "--margin", String(0.01 * i * size));
-      same_members(moving, margin, 7, what);
-      same_members(snug.clearance(a, b, { motionB, absolute: 0.02 * size, relative: 0.2 }), ask("clearance", ...files, "--path-b", path, "--absolute", String(0.02 * size), "--relative", "0.2"), 8, what);
-    }
-  }
-  for (const [name, scheme] of [["bracket.obj", "auto"], ["star.obj", "auto"], ["pin.obj", "bilinear"], ["bracket.obj", "midedge"], ["ring.obj", "flat"]]) {
-    const surface = model(name, { scheme }), native = (question, ...words) => ask(question, join(models, name), "--scheme", scheme, ...words);
-    const text = (rows) => rows.map((row) => row.join(" ")).join("\n") + "\n", file = join(scratch, "rows.txt");
-    const points = Array.from({ length: 40 * few }, () => [0, 1, 2].map(() => centred(3 * surface.size)));
-    writeFileSync(file, text(points));
-    const near = points.map((point) => surface.closestPoint(point));
-    native("closest", "--points", file).results.forEach((one, i) => same_members(near[i], one, 4, `${name}: point ${i}`));
-    const towards = near.map(({ point }, i) => point.map((x, k) => x - points[i][k]));
-    writeFileSync(file, text(points.map((point, i) => [...point, ...towards[i]])));
-    native("ray", "--rays", file, "--all").results.forEach((one, i) => {
-      const own = surface.ray(points[i], towards[i], { query: "all" });
-      assert.equal(own.outcome, one.outcome);
-      assert.equal(own.hits.length, one.hits.length);
-      one.hits.forEach((hit, k) => same_members(own.hits[k], hit, 6, `${name}: ray ${i}`));
-    });
-    same_members(surface.measure(), native("measure"), 6, name);
-    same_members(surface.selfContact(), native("self-contact"), 4, name);
-  }
+  const counts = holdAll(snug, linesOf(command, scratch), (path) => readFileSync(path));
+  assert.ok(Object.keys(counts).length === 21 && Object.values(counts).every((n) => n >= 10), JSON.stringify(counts));
 });
 
 test("answers about many poses at once as one by one, and in time", () => {
@@ -443,7 +385,7 @@ test("moves robots as the native library does", () => {
   const path = [0, 1.25, 2.5].map((x) => ({ shoulder: x, elbow: x })), own = arm.firstContacts(path, { joined: true });
   assert.deepStrictEqual([arm.name, arm.links, arm.joints, arm.outward], ["arm", ["base", "upper", "lower"], { shoulder: [-3.2, 3.2], elbow: [-3.2, 3.2] }, 0]);
   assert.equal(own.length, 3);
-  own.forEach((each, i) => same_members(each, native[i], 10, `pair ${i}`));
+  own.forEach((each, i) => assert.ok(compare(each, native[i], `pair ${i}`) >= 10));
   assert.ok(own.some(({ verdict, time }) => verdict === "intersecting" && time[0] > 1));
   assert.equal(arm.firstContacts(path).length, 1);
   const [r0, , , x] = arm.poses({ shoulder: Math.PI / 2 }).lower;
@@ -518,6 +460,32 @@ test("works in a worker, with promises, progress and an end on request", async (
   await assert.rejects(bust.measure());
   await later.close();
   await assert.rejects(later.pose({}), /closed/);
+});
+
+test("shares poses out to several workers, with the bits of one", async () => {
+  const { default: SnugWorker } = await import(pathToFileURL(join(folder, "worker.js")));
+  const several = SnugWorker({ threads: 3, simd }), names = ["bracket.obj", "pin.obj"];
+  const own = names.map((name) => model(name)), there = [];
+  for (const name of names) there.push(await several.read(name, readFileSync(join(models, name))));
+  const posesB = Float64Array.from(poses(own[0].size, 100).flat()), done = [];
+  const asked = [several.collideMany(...there, posesB, { progress: (share) => done.push(share) }), several.distanceMany(...there, [...posesB], { relative: 0.1 })];
+  const answers = [snug.collideMany(...own, posesB), snug.distanceMany(...own, posesB, { relative: 0.1 })];
+  assert.deepStrictEqual(await Promise.all(asked), answers);
+  assert.ok(done.every((share) => share >= 0 && share <= 1));
+  assert.equal((await several.collideMany(...there, [])).verdicts.length, 0);
+  assert.equal((await several.collideMany(...there, posesB.slice(0, 12))).verdicts[0], answers[0].verdicts[0]);
+  await assert.rejects(several.collideMany(...there, posesB.slice(5)), { name: "SnugError", problem: "pose" });
+  // Surfaces that are made meanwhile are in all of them, and in those that take the place of ended ones.
+  const third = await several.read("star.obj", readFileSync(join(models, "star.obj")));
+  const ended = assert.rejects(several.distanceMany(...there, posesB, { relative: 0, absolute: 0, signal: AbortSignal.timeout(1) }), { name: "TimeoutError" });
+  const others = Array.from({ length: 7 }, () => several.distance(third, there[1]));
+  await ended;
+  for (const each of await Promise.all(others)) assert.deepStrictEqual(each, snug.distance(model("star.obj"), own[1]));
+  assert.deepStrictEqual(await several.collideMany(...there, posesB), answers[0]);
+  await third.delete();
+  await assert.rejects(Promise.all(Array.from({ length: 4 }, () => several.distance(third, there[1]))), TypeError);
+  assert.throws(() => SnugWorker({ threads: 0 }), TypeError);
+  await several.close();
 });
 
 test("lists contacts as the native library does, member by member", () => {

@@ -9,10 +9,12 @@ import { basename, dirname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
+import { linesOf } from "../../tests/doors/ask.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const command = resolve(process.env.SNUG ?? join(root, "build/release/bin/snug"));
 const page_file = resolve(process.env.SNUG_PAGE ?? join(root, "build/web/snug.html"));
+const package_folder = resolve(process.env.SNUG_PACKAGE ?? join(root, "build/web/package"));
 const models = join(root, "examples/models");
 const corpus = join(root, "tests/corpus");
 const pictures = join(dirname(page_file), "screenshots");
@@ -105,6 +107,26 @@ test("gives a proof that snug-check accepts", { skip }, async () => {
   const says = execFileSync(join(dirname(command), "snug-check"), [await download.path()], { encoding: "utf8" });
   assert.match(says, /proved: surface 0 .* and surface 1 /);
   assert.equal(await page.textContent("#proof-text"), "");
+  await close();
+});
+
+test("its module gives the digits of the command to questions of every kind", { skip }, async () => {
+  const { page, close } = await open();
+  const scripts = [join(package_folder, "snug.js"), join(root, "tests/doors/answers.mjs")].map((path) => readFileSync(path, "utf8"));
+  await page.evaluate(async (texts) => {
+    const [{ default: Snug }, { holdAll }] = await Promise.all(texts.map((text) => import(URL.createObjectURL(new Blob([text], { type: "text/javascript" })))));
+    const zipped = new Blob([Uint8Array.from(atob(document.getElementById("snug-wasm").textContent), (c) => c.charCodeAt(0))]).stream();
+    const snug = await Snug({ wasm: await new Response(zipped.pipeThrough(new DecompressionStream("gzip"))).arrayBuffer() });
+    window.hold = (lines, files) => holdAll(snug, lines, (path) => files[path]);
+  }, scripts);
+  const lines = linesOf(command, scratch), counts = {};
+  for (let begin = 0; begin < lines.length; begin += 200) {
+    const some = lines.slice(begin, begin + 200), files = some.flatMap((line) => JSON.parse(line).files);
+    const texts = Object.fromEntries(files.map((path) => [path, readFileSync(path, "utf8")]));
+    const held = await page.evaluate(([each, texts]) => window.hold(each, texts), [some, texts]);
+    for (const [kind, n] of Object.entries(held)) counts[kind] = (counts[kind] ?? 0) + n;
+  }
+  assert.ok(Object.keys(counts).length === 21 && Object.values(counts).every((n) => n >= 10), JSON.stringify(counts));
   await close();
 });
 
@@ -548,7 +570,6 @@ test("a scene is shown with its placed parts, and any two of them are asked abou
 // A page of somebody else's: three and the package from npm, put together by esbuild, and nothing but arrays between them.
 test("three draws a tessellation of arrays", { skip }, async () => {
   const { build } = await import("esbuild");
-  const package_folder = process.env.SNUG_PACKAGE ?? join(root, "build/web/package");
   const entry = `
     import Snug from ${JSON.stringify(join(package_folder, "snug.js"))};
     import * as three from "three";
