@@ -84,8 +84,7 @@ ExitStatus run(const Options& options) {
 Command weights_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   add_place_options(list, options->samples, options->at);
   add_common_options(list, *options);
   return {"weights",

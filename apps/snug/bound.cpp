@@ -234,8 +234,7 @@ ExitStatus run(const Options& options) {
 Command bound_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   list.add(Group::own, "--error LENGTH", &options->error,
            "Split until each radius is at most half of this; mesh units or percent, such as 1%")
       .formerly("--tolerance");

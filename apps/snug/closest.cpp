@@ -198,7 +198,7 @@ Command closest_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::closest_point;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_help);
   list.add(Group::own, "--points FILE", &options->points,
            "File with one point per line, 'x y z'; text, CSV or a NumPy array (.npy); - for standard input")
       .required();

@@ -62,21 +62,6 @@ std::string sentence(const Collision& answer, const CollideOptions& asked) {
                      measured ? upper : "?", advice(answer, asked));
 }
 
-// With --exit-code.
-ExitStatus status_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::separated:
-      return ExitStatus::answered;
-    case Verdict::within:
-      return ExitStatus::within;
-    case Verdict::intersecting:
-      return ExitStatus::intersecting;
-    case Verdict::undecided:
-      break;
-  }
-  return ExitStatus::undecided;
-}
-
 // Verdict, bounds of the distance and witnesses of one pose among many.
 std::string row(const Collision& answer) {
   std::string text =

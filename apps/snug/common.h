@@ -43,6 +43,11 @@ struct CommonOptions {
   bool quiet = false;
 };
 
+/// What is said of the option MESH.
+inline constexpr const char *mesh_help = "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)",
+                            *mesh_or_input_help =
+                                "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)";
+
 /// Those of every command: --scheme, --boundary, --weld, --sharp, --scale, --units, and those below.
 void add_common_options(OptionList& list, CommonOptions& options);
 /// Those of commands without a mesh: --json, -o, --quiet, --threads.

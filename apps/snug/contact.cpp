@@ -179,21 +179,6 @@ Surface surface_at(const DeformingSurface& moving, double time) {
   return MovingSurface(moving.surface).move(points);
 }
 
-// With --exit-code.
-ExitStatus status_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::separated:
-      return ExitStatus::answered;
-    case Verdict::within:
-      return ExitStatus::within;
-    case Verdict::intersecting:
-      return ExitStatus::intersecting;
-    case Verdict::undecided:
-      break;
-  }
-  return ExitStatus::undecided;
-}
-
 // Two meshes and their motions, read and made ready.
 class MovingArguments {
  public:

@@ -254,9 +254,7 @@ Command convert_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::brep;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)")
-      .unless("--scene");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help).unless("--scene");
   list.add(Group::own, "--scene FILE", &options->scene,
            "A scene file instead: an assembly, in which its parts are placed");
   list.add(Group::own, "--error LENGTH", &options->error,

@@ -248,7 +248,7 @@ Command deviation_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::deviation;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_help);
   list.add(Group::own, "CANDIDATE", &options->candidate,
            "Triangles to compare with the limit surface, such as a tessellation or a scan");
   list.add(Group::own, "--absolute LENGTH", &options->precision,

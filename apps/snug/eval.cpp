@@ -212,8 +212,7 @@ ExitStatus run(const Options& options) {
 Command eval_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   add_place_options(list, options->samples, options->at).help += ", 'edge t' for curves";
   add_degree_option(list, options->degree);
   add_common_options(list, *options);

@@ -102,8 +102,7 @@ Command hull_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::hull;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   list.add(Group::own, "--error LENGTH", &options->error,
            "Largest distance between limit surface and hulls, either way; mesh units or percent, such as 1%")
       .formerly("--tolerance");

@@ -61,8 +61,7 @@ ExitStatus run(const Options& options) {
 Command info_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   add_common_options(list, *options);
   return {"info",
           Topic::files,

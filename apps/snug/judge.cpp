@@ -289,8 +289,7 @@ ExitStatus run(const Options& options) {
 Command judge_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   list.add(Group::effort, "--seconds N", &options->seconds, "Longest time for one question")
       .between(1, 86'400);
   add_common_options(list, *options);

@@ -72,7 +72,7 @@ Command measure_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::measure;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_help);
   list.add(Group::own, "--relative SHARE", &options->precision,
            "Largest relative width of an interval: 0.0001 or 0.01%")
       .formerly("--precision");

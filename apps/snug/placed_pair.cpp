@@ -47,6 +47,20 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many) {
   }
 }
 
+ExitStatus status_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::separated:
+      return ExitStatus::answered;
+    case Verdict::within:
+      return ExitStatus::within;
+    case Verdict::intersecting:
+      return ExitStatus::intersecting;
+    case Verdict::undecided:
+      break;
+  }
+  return ExitStatus::undecided;
+}
+
 void write_poses(JsonWriter& json, const PosePair& poses) {
   for (const auto& [key, motion] : {std::pair{"place_a", &poses.a}, {"place_b", &poses.b}}) {
     json.key(key).begin_array();

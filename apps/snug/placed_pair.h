@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include <snug/surface.h>
+#include <snug/collide.h>
 
 #include "common.h"
 #include "pose.h"
@@ -28,6 +28,9 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many = true);
 
 /// The fields place_a and place_b: the twelve numbers of each pose.
 void write_poses(JsonWriter& json, const PosePair& poses);
+
+/// With --exit-code.
+[[nodiscard]] ExitStatus status_of(Verdict verdict);
 
 /// Two meshes, read and made ready.
 class PairArguments {

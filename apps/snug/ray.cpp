@@ -117,7 +117,7 @@ Command ray_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::ray;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_help);
   list.add(Group::own, "--rays FILE", &options->rays,
            "File with one ray per line, 'ox oy oz dx dy dz', followed by 'from to' for a segment; text, CSV "
            "or a NumPy array (.npy); - for standard input")

@@ -85,7 +85,7 @@ Command self_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::self_contact;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_help);
   list.add(Group::own, "--within LENGTH", &options->tolerance,
            "Also decide whether points at most this far apart (mesh units, or percent of the size) are far "
            "apart "

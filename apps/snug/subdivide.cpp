@@ -83,8 +83,7 @@ ExitStatus run(const Options& options) {
 Command subdivide_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help);
   list.add(Group::own, "--level N", &options->level, "Steps of subdivision, 0 to 12").between(0, 12);
   list.add(Group::own, "--limit", &options->limit, "Move every vertex to its limit position");
   add_degree_option(list, options->degree);

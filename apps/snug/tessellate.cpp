@@ -208,9 +208,7 @@ Command tessellate_command() {
   auto options = std::make_shared<Options>();
   options->max_splits = default_splits::tessellate;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)")
-      .unless("--scene");
+  list.add(Group::own, "MESH", &options->mesh, mesh_or_input_help).unless("--scene");
   list.add(Group::own, "--scene FILE", &options->scene,
            "A scene file instead: its parts in their places, to a 3MF file");
   list.add(Group::own, "--error LENGTH", &options->error,
