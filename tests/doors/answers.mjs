@@ -28,8 +28,15 @@ export function compare(own, document, where) {
     const ought = name === "contained" ? (value === null ? null : "ab".indexOf(value)) : plain(value, camel);
     const here = plain(own[camel(name)]);
     // Only what the command tells of an object.
-    if (ought !== null && typeof ought === "object" && !Array.isArray(ought)) compared += compare(here, ought, `${where} ${name}`);
-    else check(here, ought, name);
+    const isObject = (x) => x !== null && typeof x === "object" && !Array.isArray(x);
+    if (isObject(ought)) {
+      compared += compare(here, ought, `${where} ${name}`);
+    } else if (Array.isArray(ought) && ought.some(isObject)) {
+      check(here.length, ought.length, `number of ${name}`);
+      ought.forEach((each, i) => (compared += compare(here[i], each, `${where} ${name} ${i}`)));
+    } else {
+      check(here, ought, name);
+    }
   }
   return compared;
 }

@@ -103,9 +103,9 @@ export default function SnugWorker({ threads: count = 1, ...options } = {}) {
   const shared = (name) => async (a, b, posesB, { progress, ...options } = {}) => {
     const share = 12 * Math.ceil(posesB.length / 12 / count);
     if (count === 1 || posesB.length % 12 !== 0 || share === 0) return sent(null, name, [a, b, posesB, { progress, ...options }]);
-    const done = threads.map(() => 0);
-    const told = (i) => progress && ((fraction) => progress((done[i] = fraction, done.reduce((x, y) => x + y) / count)));
-    const answers = await Promise.all(threads.map((_, i) =>
+    const done = Array(Math.ceil(posesB.length / share)).fill(0);
+    const told = (i) => progress && ((fraction) => progress((done[i] = fraction, done.reduce((x, y) => x + y) / done.length)));
+    const answers = await Promise.all(done.map((_, i) =>
       sent(null, name, [a, b, posesB.slice(share * i, share * (i + 1)), { progress: told(i), ...options }], { by: i })));
     const joined = (member) => {
       const all = new answers[0][member].constructor(posesB.length / 12);
