@@ -106,13 +106,14 @@ BoundOptions bound_options(const val& options) {
   BoundOptions how;
   how.error = option<double>(options, "error");
   how.level = static_cast<unsigned>(option<double>(options, "level").value_or(0));
+  how.normals = option<bool>(options, "normals").value_or(false);
   return how;
 }
 
 val enclosures(const Part& part, const val& options) {
   return guarded([&] {
     std::vector<std::uint32_t> owners, parts, levels;
-    std::vector<double> base, radius, lower, upper;
+    std::vector<double> base, radius, lower, upper, axes, angles;
     val pieces = val::array();
     const auto add = [](std::vector<double>& to, const Point3& p) { to.insert(to.end(), {p.x, p.y, p.z}); };
     const BoundSummary summary = bound(
@@ -128,6 +129,9 @@ val enclosures(const Part& part, const val& options) {
             add(lower, box.lower);
             add(upper, box.upper);
           }
+          const NormalCone cone = piece.normals.value_or(NormalCone{{NAN, NAN, NAN}, NAN});
+          add(axes, {cone.axis.x, cone.axis.y, cone.axis.z});
+          angles.push_back(cone.angle);
         },
         run_of(options));
     val result = object_of(summary);
@@ -139,6 +143,10 @@ val enclosures(const Part& part, const val& options) {
     result.set("radius", copied(radius));
     result.set("lower", copied(lower));
     result.set("upper", copied(upper));
+    if (option<bool>(options, "normals").value_or(false)) {
+      result.set("axes", copied(axes));
+      result.set("angles", copied(angles));
+    }
     return result;
   });
 }

@@ -48,12 +48,13 @@ struct Enclosures {
 };
 auto members_of(Either<Enclosures> auto& t) { return std::tie(t.pieces, t.summary); }
 
-Enclosures bounded(const PySurface& self, const py::object& error, unsigned level,
+Enclosures bounded(const PySurface& self, const py::object& error, unsigned level, bool normals,
                    const py::object& max_splits, const py::object& threads, const py::object& progress) {
   const Surface surface = self.surface();
   BoundOptions options;
   options.error = length_of(error, surface.size(), "error");
   options.level = level;
+  options.normals = normals;
   Call call(progress, run_of(threads, max_splits));
   return call.run([&](const Run& run) {
     Enclosures result;
@@ -63,23 +64,62 @@ Enclosures bounded(const PySurface& self, const py::object& error, unsigned leve
   });
 }
 
-// The box of an interval triangle is exact: its corners are those of boxes.
-py::array boxes_of(const PySurface& self, unsigned level, const py::object& threads) {
-  const PySurface taken = self;  // which an update() meanwhile does not reach
-  const Enclosures enclosures = bounded(taken, py::none(), level, py::none(), threads, py::none());
-  const Surface& surface = taken.surface();
+// Boxes of owners; visit(add) calls add(owner, box) for each box that one has.
+template <class Visit>
+py::array boxes_by_owner(const Surface& surface, const Visit& visit) {
   const bool dual = surface.scheme() == Scheme::doo_sabin || surface.scheme() == Scheme::midedge;
   std::vector<Box3> boxes(dual ? surface.mesh().vertex_count() : surface.mesh().face_count());
-  for (const PatchEnclosure& piece : enclosures.pieces) {
-    if (piece.patch.owner >= boxes.size()) boxes.resize(piece.patch.owner + 1);
-    for (const Box3& corner : piece.interval.corner) boxes[piece.patch.owner].add(corner);
-  }
+  visit([&](std::uint32_t owner, const Box3& box) {
+    if (owner >= boxes.size()) boxes.resize(owner + 1);
+    boxes[owner].add(box);
+  });
   py::array_t<double> result({static_cast<py::ssize_t>(boxes.size()), py::ssize_t{2}, py::ssize_t{3}});
   double* out = result.mutable_data();
   for (const Box3& box : boxes) {
     for (const Point3& p : {box.lower, box.upper}) {
       for (std::size_t k = 0; k < 3; ++k) *out++ = box.empty() ? nan : p[k];
     }
+  }
+  return result;
+}
+
+// The box of an interval triangle is exact: its corners are those of boxes.
+py::array boxes_of(const PySurface& self, unsigned level, const py::object& threads) {
+  const PySurface taken = self;  // which an update() meanwhile does not reach
+  const Enclosures enclosures = bounded(taken, py::none(), level, false, py::none(), threads, py::none());
+  return boxes_by_owner(taken.surface(), [&](const auto& add) {
+    for (const PatchEnclosure& piece : enclosures.pieces) {
+      for (const Box3& corner : piece.interval.corner) add(piece.patch.owner, corner);
+    }
+  });
+}
+
+py::array boxes_until(const PySurface& self, const py::object& end, unsigned level,
+                      const py::object& threads) {
+  if (level != 0) throw py::value_error("boxes: with end, level is 0");
+  const Surface surface = self.surface();
+  const Points points(end, "end");
+  Call call(py::none(), run_of(threads));
+  std::vector<PatchPlace> patches;
+  std::vector<Box3> boxes;
+  call.run([&](const Run& run) {
+    PatchBounds bounds(surface, run);
+    patches.assign(bounds.patches().begin(), bounds.patches().end());
+    boxes.resize(patches.size());
+    bounds.update(surface.mesh().points, points.all(), boxes, run);
+  });
+  return boxes_by_owner(surface, [&](const auto& add) {
+    for (std::size_t i = 0; i < patches.size(); ++i) add(patches[i].owner, boxes[i]);
+  });
+}
+
+// A column of cones: `count` numbers each, NaN where none is proved.
+py::array cones_of(const Enclosures& self, std::vector<py::ssize_t> shape, const auto& numbers) {
+  shape.insert(shape.begin(), static_cast<py::ssize_t>(self.pieces.size()));
+  py::array_t<double> result(shape);
+  double* out = result.mutable_data();
+  for (const PatchEnclosure& piece : self.pieces) {
+    for (const double x : numbers(piece.normals.value_or(NormalCone{{nan, nan, nan}, nan}))) *out++ = x;
   }
   return result;
 }
@@ -132,13 +172,29 @@ void add_enclosures(py::module_& module) {
   box_view("lower", 0, "Lower corners of three boxes whose convex hull contains the piece, (n, 3, 3).");
   box_view("upper", 1, "Upper corners of these boxes, (n, 3, 3).");
   cls.def_property_readonly(
-         "pieces",
+         "axis",
          [](const Enclosures& self) {
-           py::list names;
-           for (const PatchEnclosure& piece : self.pieces) names.append(piece.piece);
-           return names;
+           return cones_of(self, {3}, [](const NormalCone& cone) {
+             return std::array{cone.axis.x, cone.axis.y, cone.axis.z};
+           });
          },
-         "Which piece of its patch: a list of words with a digit for each split.")
+         "With normals=True: the surface has a normal at every point of the piece, at most `angle` from this "
+         "axis, (n, 3); NaN where that\n"
+         "is not proved.")
+      .def_property_readonly(
+          "angle",
+          [](const Enclosures& self) {
+            return cones_of(self, {}, [](const NormalCone& cone) { return std::array{cone.angle}; });
+          },
+          "In radians, (n,); NaN likewise.")
+      .def_property_readonly(
+          "pieces",
+          [](const Enclosures& self) {
+            py::list names;
+            for (const PatchEnclosure& piece : self.pieces) names.append(piece.piece);
+            return names;
+          },
+          "Which piece of its patch: a list of words with a digit for each split.")
       .def_property_readonly(
           "outcome", [](const Enclosures& self) { return name_of(self.summary.outcome); },
           "'complete', 'budget-spent', or 'at-rounding' where 60 levels or rounding ended splitting.")
@@ -372,31 +428,34 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
   surface
       .def(
           "bound",
-          [](const PySurface& self, const py::object& error, const py::object& level,
+          [](const PySurface& self, const py::object& error, const py::object& level, bool normals,
              const py::object& max_splits, const py::object& threads, const py::object& progress) {
             const auto splits =
                 static_cast<unsigned>(std::min<std::uint64_t>(count_of(level, 0, "level"), 1000));
-            return bounded(self, error, splits, max_splits, threads, progress);
+            return bounded(self, error, splits, normals, max_splits, threads, progress);
           },
-          py::kw_only(), arg("error") = none, arg("level") = 0, arg("max_splits") = none, arg("threads") = 0,
-          arg("progress") = none,
+          py::kw_only(), arg("error") = none, arg("level") = 0, arg("normals") = false,
+          arg("max_splits") = none, arg("threads") = 0, arg("progress") = none,
           "Sets that contain the whole surface, piece by piece.\n\n"
           "error: split until each radius is at most half of it; mesh units or percent of the size. "
           "Without one every\n"
-          "patch is split `level` times. max_splits: most splits in all.\n\n"
+          "patch is split `level` times. normals: cones of normals, too. max_splits: most splits in all.\n\n"
           "Guarantee: every limit point of a patch lies in the union of its pieces' sets. Raises ValueError, "
           "OverflowError.")
       .def(
           "boxes",
-          [](const PySurface& self, const py::object& level, const py::object& threads) {
-            return boxes_of(self,
-                            static_cast<unsigned>(std::min<std::uint64_t>(count_of(level, 0, "level"), 1000)),
-                            threads);
+          [](const PySurface& self, const py::object& given, const py::object& end,
+             const py::object& threads) {
+            const auto level =
+                static_cast<unsigned>(std::min<std::uint64_t>(count_of(given, 0, "level"), 1000));
+            return end.is_none() ? boxes_of(self, level, threads) : boxes_until(self, end, level, threads);
           },
-          arg("level") = 0, py::kw_only(), arg("threads") = 0,
+          arg("level") = 0, py::kw_only(), arg("end") = none, arg("threads") = 0,
           "A box around the surface of each face (of dual schemes vertex), (n, 2, 3): lower and upper "
           "corners; NaN where it\n"
-          "has no surface. level: split so often first, for tighter boxes. Proved.")
+          "has no surface. level: split so often first, for tighter boxes. end: vertices (n, 3) to which the "
+          "control points move along\n"
+          "lines; the boxes hold the surface all the time. Proved.")
       .def("tessellate", &tessellated, arg("error") = none, py::kw_only(), arg("max_edge") = none,
            arg("max_angle") = none, arg("view") = none, arg("max_thickness") = none,
            arg("max_triangles") = none, arg("single_precision") = false, arg("normals") = true,

@@ -254,6 +254,29 @@ def test_files(tmp_path, cube):
             tagged.write(tmp_path / "again.off")
 
 
+def test_cones_of_normals(cube):
+    bound = cube.bound(level=3, normals=True)
+    assert bound.axis.shape == (len(bound), 3) and bound.angle.shape == (len(bound),)
+    assert np.isfinite(bound.angle).all() and np.isnan(cube.bound(level=3).axis).all()
+    points = cube.evaluate(np.repeat(np.arange(6), 20), *np.random.default_rng(1).random((2, 120)))
+    for face, normal in zip(np.repeat(np.arange(6), 20), points.normal):
+        own = bound.face == face
+        assert (bound.axis[own] @ normal >= np.cos(bound.angle[own]) - 1e-9).any()
+
+
+def test_boxes_of_a_motion(cube):
+    end = cube.vertices * [1, 2, 1] + [0.3, 0, 0]
+    boxes = cube.boxes(end=end)
+    faces, at = np.repeat(np.arange(6), 20), np.random.default_rng(1).random((2, 120))
+    for time in (0, 0.3, 1):
+        points = snug.Surface((1 - time) * cube.vertices + time * end, cube.faces).evaluate(faces, *at).point
+        assert (boxes[faces, 0] <= points).all() and (points <= boxes[faces, 1]).all()
+    with pytest.raises(ValueError, match="level is 0"):
+        cube.boxes(1, end=end)
+    with pytest.raises(ValueError):
+        cube.boxes(end=end[1:])
+
+
 def test_shapes(cube):
     bound = cube.bound(error="1%")
     assert bound.outcome == "complete" and bound.max_radius <= 0.005 * cube.size * 1.0001 and len(bound) == len(bound.pieces) == len(bound.radius)

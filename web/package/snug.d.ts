@@ -113,6 +113,9 @@ export interface Geometry {
 export interface ManyDistances {
   lower: Float64Array;
   upper: Float64Array;
+  /** With normals: all normals of a piece are at most this angle, in radians, from its axis; NaN where no cone is proved. */
+  axes?: Float64Array;
+  angles?: Float64Array;
 }
 export interface ManyCollisions extends ManyDistances {
   /** 0 separated, 1 within, 2 intersecting, 3 undecided. */
@@ -179,6 +182,8 @@ export interface BoundOptions extends CallOptions {
   error?: number;
   /** Without it: split every patch this many times. */
   level?: number;
+  /** Cones of normals, too. */
+  normals?: boolean;
 }
 /** Of piece i: base has 9 numbers, three corners of the triangle whose sweep by radius[i] contains it; lower and upper have 9
  *  numbers each, three boxes whose hull contains it, too. */
