@@ -117,19 +117,6 @@ test("makes the motions of the native library", () => {
   }
 });
 
-test("encloses as the native library does", () => {
-  for (const [name, level] of [["bracket.obj", 2], ["pawn.obj", 1], ["ring.obj", 1]]) {
-    const native = ask("bound", join(models, name), "--level", String(level)).enclosures;
-    const own = model(name).enclosures({ level });
-    assert.equal(own.count, native.length);
-    native.forEach((each, i) => {
-      const three = (list) => [...list.subarray(9 * i, 9 * i + 9)];
-      assert.deepStrictEqual([three(own.base), own.radius[i], three(own.lower), three(own.upper), own.pieces[i]],
-        [each.base.flat(), each.radius, each.lower.flat(), each.upper.flat(), each.piece]);
-    });
-  }
-});
-
 test("reads numbers exactly", () => {
   const numbers = ["0.1", "1e-320", "4.9e-324", "2.4703282292062327e-324", "2.4703282292062328e-324", "1.7976931348623157e308", "-0", "123456789012345678901234567890",
     "9007199254740993", "0.500000000000000166533453693773481063544750213623046875", "1.00000000000000011102230246251565404236316680908203125", "1e-400", ".5", "5.", "1E3"];
@@ -262,41 +249,18 @@ test("takes the geometries of three.js", async () => {
   assert.throws(() => snug.fromGeometry({}), TypeError);
 });
 
-test("asks about itself, motions, rays, envelopes and deviations as the native library does", () => {
-  const same = (own, native) => assert.deepStrictEqual(own, native);
-  for (const [name, scheme] of [["bracket.obj", "auto"], ["star.obj", "auto"], ["pawn.obj", "bilinear"]]) {
-    const surface = model(name, { scheme }), path = join(models, name), native = (...words) => ask(...words, "--scheme", scheme);
-    const self = native("self-contact", path);
-    same(surface.selfContact().verdict, self.verdict);
-    same(surface.selfContact().pairs.map((pair) => [pair.verdict, pair.touching, pair.distance, pair.witness]),
-      self.pairs.map((pair) => [pair.verdict, pair.touching, pair.distance, pair.witness]));
-    const points = Array.from({ length: 10 }, () => [centred(2), centred(2), centred(2)]);
-    const file = join(scratch, "rays.txt");
-    writeFileSync(file, points.map((p) => `${p.join(" ")} 0.1 0.2 -1\n`).join(""));
-    native("ray", path, "--rays", file, "--all").results.forEach(({ hits }, i) => {
-      const own = surface.ray(points[i], [0.1, 0.2, -1], { query: "all" });
-      same(own.hits.map((hit) => [hit.t, hit.certified, hit.side]), hits.map((hit) => [hit.t, hit.certified, hit.side]));
-    });
-    writeFileSync(file, points.map((p) => `${p.join(" ")}\n`).join(""));
-    native("closest", path, "--points", file, "--signed").results.forEach((each, i) => same(surface.contains(points[i]), each.inside));
-  }
-  const [bracket, pin] = [model("bracket.obj"), model("pin.obj")], files = [join(models, "bracket.obj"), join(models, "pin.obj")];
-  const poses = [snug.pose({ move: [0, 0, 2] }), snug.pose({ degrees: 30, move: [0.1, 0, 1] }), snug.pose({ move: [0, 0, 0.5] })];
-  const path = join(scratch, "path.txt");
-  writeFileSync(path, poses.map((pose) => pose.join(" ")).join("\n") + "\n");
-  const first = ask("time-of-contact", ...files, "--path-b", path);
-  const own = snug.timeOfContact(bracket, pin, { motionB: poses });
-  assert.equal(first.verdict, "intersecting");
-  same([own.verdict, own.time, own.steps, own.witness], [first.verdict, first.time, first.steps, first.witness]);
-  assert.throws(() => snug.timeOfContact(bracket, pin, { motionB: [] }), { problem: "value", message: "motionB: give a list of poses" });
-  const around = pin.envelope({ error: 0.05 * pin.size });
+test("makes envelopes, deviations and points that fit each other", () => {
+  const pin = model("pin.obj"), around = pin.envelope({ error: 0.05 * pin.size });
   assert.ok(around.outcome === "complete" && around.positions.length % 3 === 0 && around.triangles.length > 30 && around.clearance === around.error / 4);
   const triangles = pin.tessellate({ error: 0.01 * pin.size });
   const apart = snug.deviation(pin, triangles, { absolute: 1e-3 * pin.size });
   assert.ok(apart.outcome === "complete" && apart.fromSurface.distance[1] <= triangles.errorBound * 1.001 + 1e-3 * pin.size);
   assert.throws(() => snug.deviation(pin, { positions: [0, 0, 0], triangles: [0, 1, 2] }), { problem: "value" });
+  assert.throws(() => snug.timeOfContact(pin, pin, { motionB: [] }), { problem: "value", message: "motionB: give a list of poses" });
   const there = pin.evaluate({ owner: 3, corner: 0, u: 0.25, v: 0.5 });
   assert.ok(pin.closestPoint(there.point, { absolute: 1e-9 }).distance[0] <= 1e-9 && there.normal.length === 3);
+  const { axes, angles, count } = pin.enclosures({ normals: true });
+  assert.ok(axes.length === 3 * count && angles.some((angle) => angle > 0) && pin.enclosures().axes === undefined);
 });
 
 test("gives the digits of the native library to questions of every kind", () => {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <snug/geometry/angles.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/brep_voids.h>
@@ -269,7 +270,7 @@ double BrepMaker::break_of(const Brep& brep, const FaceJoint& joint, std::vector
     const SplineFrame p = frame_at(brep.faces[a.face].surface, u, v),
                       q = frame_at(brep.faces[b.face].surface, s, r);
     if (!p.normal || !q.normal) return 0.0;
-    return degrees * std::atan2(snug::length(cross(*p.normal, *q.normal)), dot(*p.normal, *q.normal));
+    return degrees * angle_of(snug::length(cross(*p.normal, *q.normal)), dot(*p.normal, *q.normal));
   };
   if (!layout_.smooth(joint, length)) return 0;
   double largest = 0;

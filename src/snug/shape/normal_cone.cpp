@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <snug/geometry/angles.h>
 #include <snug/geometry/bernstein.h>
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
@@ -317,9 +318,9 @@ double tangent_from(Vector3 axis, const Ball& ball) {
 std::optional<NormalCone> cone_around(Vector3 axis, std::span<const Ball> balls) {
   double tangent = 0;
   for (const Ball& ball : balls) tangent = std::max(tangent, tangent_from(axis, ball));
-  if (!(tangent < INFINITY)) return std::nullopt;
-  // Whatever the C library's arc tangent is off by.
-  const double angle = std::atan(tangent) + 0x1p-44;
+  if (!(tangent < 0x1p100)) return std::nullopt;
+  // More than roundings of both.
+  const double angle = angle_of(tangent, 1) + 0x1p-44;
   const SineCosine exact = sine_cosine(Interval(angle));
   if (!(exact.cosine.lower > 0) || !(exact.sine.lower >= rounded_up(tangent * exact.cosine.upper))) {
     return std::nullopt;
