@@ -371,7 +371,8 @@ class EnvelopeMaker {
   [[nodiscard]] bool is_near(const Triangle& t, const QuadraticFoot& foot, Effort effort) const {
     if (effort.bridges && foot.distance > bridged_from() && is_bridge(t)) return true;
     if (foot.distance > band_.upper) return false;
-    if (farthest(t, foot) <= band_.upper) return true;
+    if (farthest(t, foot) <= band_.upper || farthest_from(pieces_.set, foot, t, band_.upper) <= band_.upper)
+      return true;
     if (effort.halvings == 0) return effort.if_open;
     const std::size_t k = longest_side(t);
     const Point3 middle = t[k] + 0.5 * (t[(k + 1) % 3] - t[k]);

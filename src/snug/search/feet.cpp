@@ -13,6 +13,9 @@ namespace {
 
 using Corners = std::array<TriangleParameter, 3>;
 
+// Of the largest bend: how far means of three points are from a quadratic, at most.
+constexpr double between_feet = 0.5;
+
 constexpr Corners whole_triangle{TriangleParameter{0, 0}, {1, 0}, {0, 1}};
 
 std::array<Corners, 4> quarters(const Corners& of) {
@@ -39,6 +42,10 @@ Point3 flat_point(const QuadraticTriangle& q, TriangleParameter at) {
 
 Vector3 bend(const QuadraticTriangle& q, std::size_t k) {
   return (q.middles[k] - q.corners[k]) + (q.middles[k] - q.corners[(k + 1) % 3]);
+}
+
+double largest_bend(const QuadraticTriangle& q) {
+  return std::sqrt(std::max({length_sq(bend(q, 0)), length_sq(bend(q, 1)), length_sq(bend(q, 2))}));
 }
 
 bool is_curved(const QuadraticTriangle& q) {
@@ -327,6 +334,24 @@ QuadraticFoot nearest_foot(const PieceSet& set, const Point3& p, const Quadratic
     return false;
   });
   return best;
+}
+
+double farthest_from(const PieceSet& set, const QuadraticFoot& foot, const Triangle& triangle, double most) {
+  const QuadraticTriangle& q = set[foot.piece];
+  const double bent = largest_bend(q);
+  double longest = 0, far = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    longest = std::max(longest, distance(q.corners[k], q.corners[(k + 1) % 3]));
+  }
+  // Most triangles are farther across than the piece.
+  for (const Point3& p : triangle) {
+    if (distance(p, foot.point) > most + longest + bent) return INFINITY;
+  }
+  for (const Point3& p : triangle) {
+    far = std::max(far, distance(p, point_of(q, flat_foot(q.corners[0], q.corners[1], q.corners[2], p))));
+    if (far > most) return INFINITY;
+  }
+  return enlarged(far + between_feet * bent + q.error) + distance_rounding;
 }
 
 namespace {

@@ -49,6 +49,12 @@ struct QuadraticFoot {
 [[nodiscard]] QuadraticFoot nearest_foot(const PieceSet& set, const Point3& p,
                                          const QuadraticFoot& hint = {});
 
+/// An upper bound of the distances of a triangle's points from the piece of a foot, by points of it near the corners; infinite if one of
+/// these is farther than `most`.
+/// Source:    derivations/envelopes.md, "Proving it".
+[[nodiscard]] double farthest_from(const PieceSet& set, const QuadraticFoot& foot, const Triangle& triangle,
+                                   double most);
+
 /// A lower bound of the distance of p to the sets of the pieces. Improves `foot` where a nearer one is met.
 /// Tightness: within `gap` of foot.distance less the errors of the pieces near it, unless curvature would
 ///            take too many splits.

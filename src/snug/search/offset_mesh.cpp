@@ -51,7 +51,7 @@ class Numbers {
 
  private:
   [[nodiscard]] std::size_t find(Code code) const {
-    std::size_t slot = (code * 0x9e3779b97f4a7c15u >> 20) & (slots_.size() - 1);
+    std::size_t slot = (code * 0x9e3779b97f4a7c15u >> 36) & (slots_.size() - 1);
     while (slots_[slot] != no_index && codes_[slots_[slot]] != code) slot = (slot + 1) & (slots_.size() - 1);
     return slot;
   }
@@ -149,15 +149,12 @@ class OffsetSampler {
 
   // False if there would be too many cubes.
   bool sample() {
-    if (levels_ >= code_bits || !find_cubes()) return false;
+    if (levels_ >= code_bits) return false;
+    if (options_.ball == nullptr) return follow_outermost();
+    if (!find_cubes()) return false;
     add_corners();
     add_values();
-    // Corners that change make new cubes, whose faces may be crossed four times, and these may change corners.
-    while (closed_ < cubes_.size()) {
-      if (!close()) return false;
-      part_sheets();
-    }
-    return true;
+    return follow();
   }
 
   ClosedMesh mesh() {
@@ -211,6 +208,92 @@ class OffsetSampler {
       }
     });
     return result;
+  }
+
+  // All cubes that the sheets in those there are pass, and those across their edges.
+  bool follow() {
+    // Corners that change make new cubes, whose faces may be crossed four times, and these may change corners.
+    while (closed_ < cubes_.size()) {
+      if (!close()) return false;
+      part_sheets();
+    }
+    return true;
+  }
+
+  // The sheets around pieces that no sheet goes around yet, beginning with those farthest along the first axis: from a corner within
+  // the offset to where the line through it along that axis comes out. What is enclosed is not looked at.
+  bool follow_outermost() {
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (std::uint32_t i = 0; i < set_.size(); ++i) {
+      const Triangle& t = set_[i].corners;
+      order.emplace_back(-std::max({t[0].x, t[1].x, t[2].x}), i);
+    }
+    std::sort(order.begin(), order.end());
+    // A corner that changes may open what was closed before.
+    for (bool done = false; !done;) {
+      done = true;
+      add_crossings(0);
+      for (const auto& [x, piece] : order) {
+        const std::array<Code, 3> from = corner_beside(piece);
+        if (is_enclosed(from)) continue;
+        done = false;
+        if (!follow_from(from)) return false;
+      }
+    }
+    return true;
+  }
+  // The nearest corner to a piece's one that is farthest along the first axis: it is within the offset.
+  [[nodiscard]] std::array<Code, 3> corner_beside(std::uint32_t piece) const {
+    const Triangle& t = set_[piece].corners;
+    const Point3& p =
+        *std::max_element(t.begin(), t.end(), [](const Point3& a, const Point3& b) { return a.x < b.x; });
+    std::array<Code, 3> at;
+    for (std::size_t a = 0; a < 3; ++a)
+      at[a] = static_cast<Code>(std::lround((p[a] - origin_[a]) / options_.cell));
+    return at;
+  }
+  // False if there would be too many cubes, or no sheet goes around it.
+  bool follow_from(std::array<Code, 3> at) {
+    const std::array<Code, 3> from = at;
+    double here = value_at(at);
+    for (const Code end = Code{1} << levels_; at[0] < end; ++at[0]) {
+      const double next = value_at({at[0] + 1, at[1], at[2]});
+      if (here <= 0 && next > 0) {
+        const std::size_t known = cubes_.size();
+        cubes_.add(code_of(at[0], at[1], at[2]));
+        add_corners();
+        add_values();
+        if (!follow()) return false;
+        add_crossings(known);
+        if (is_enclosed(from)) return true;
+      }
+      here = next;
+    }
+    return false;
+  }
+  double value_at(const std::array<Code, 3>& at) {
+    const Index corner = corners_.add(code_of(at[0], at[1], at[2]));
+    add_values();
+    return static_cast<double>(values_[corner]);
+  }
+  // Is a corner within an odd number of sheets, counted along the first axis?
+  [[nodiscard]] bool is_enclosed(const std::array<Code, 3>& at) const {
+    const Index line = lines_.of(code_of(0, at[1], at[2]));
+    if (line == no_index) return false;
+    const std::vector<Code>& crossings = crossings_[line];
+    return std::count_if(crossings.begin(), crossings.end(), [&](Code x) { return x >= at[0]; }) % 2 != 0;
+  }
+  // Where sheets in cubes from that one on pass edges along the first axis; from the first one on anew.
+  void add_crossings(std::size_t first) {
+    if (first == 0) crossings_.assign(crossings_.size(), {});
+    for (std::size_t c = first; c < cubes_.size(); ++c) {
+      const std::array<Index, 8>& corners = corners_of_[c];
+      if ((values_[corners[0]] <= 0) == (values_[corners[1]] <= 0)) continue;
+      const auto [x, y, z] = parts_of(cubes_.codes()[c]);
+      const Index line = lines_.add(code_of(0, y, z));
+      crossings_.resize(lines_.size());
+      crossings_[line].push_back(x);
+    }
   }
 
   // Cubes that the offset may pass, from one that holds all down to those wanted.
@@ -362,6 +445,8 @@ class OffsetSampler {
   std::size_t closed_ = 0;                        // of cubes: those around all their crossed edges are there
   std::size_t parted_ = 0;                        // and no face of theirs is crossed four times
   std::vector<float> values_;                     // of corners: distance less the offset
+  Numbers lines_;                                 // along the first axis that sheets pass
+  std::vector<std::vector<Code>> crossings_;      // of each line: the cubes where they do
 };
 
 // Whole shells of a mesh: which of them each vertex belongs to.
