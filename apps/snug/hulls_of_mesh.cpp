@@ -40,7 +40,15 @@ const char* explained(HullFault fault) {
          "other way; query the parts one at a time";
 }
 
-// Words for people, `place` in mesh units.
+void write_problem(JsonWriter& json, const HullProblem& problem, const char* owner) {
+  json.begin_object().field("fault", name_of(problem.fault)).field("hull", problem.inner ? "inner" : "outer");
+  json.field("place", problem.place).key(owner);
+  problem.owner ? json.value(*problem.owner) : json.null();
+  json.end_object();
+}
+
+}  // namespace
+
 std::string sentence(const HullProblem& problem, const char* owner) {
   const auto& [x, y, z] = problem.place;
   const std::string at = problem.owner ? fmt::format(" at {} {}", owner, *problem.owner) : "";
@@ -51,15 +59,6 @@ std::string sentence(const HullProblem& problem, const char* owner) {
   return fmt::format("{} hull{}, near ({:.6g} {:.6g} {:.6g}): {}", problem.inner ? "inner" : "outer", at, x,
                      y, z, explained(problem.fault));
 }
-
-void write_problem(JsonWriter& json, const HullProblem& problem, const char* owner) {
-  json.begin_object().field("fault", name_of(problem.fault)).field("hull", problem.inner ? "inner" : "outer");
-  json.field("place", problem.place).key(owner);
-  problem.owner ? json.value(*problem.owner) : json.null();
-  json.end_object();
-}
-
-}  // namespace
 
 ControlMesh mesh_of(const Hull& hull) {
   ControlMesh mesh;

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "common.h"
+#include "hulls_of_mesh.h"
 #include "mesh_reading.h"
 #include "mesh_summary.h"
 #include "progress_bar.h"
@@ -95,6 +96,11 @@ class Judge {
     ask("hull", [&](const Run& run, Answer& answer) {
       const Hulls found = hull(surface_, {.error = error()}, run);
       answer.word = name_of(found.outcome);
+      // Where the surface goes through itself a note says so already.
+      if (found.outcome != Outcome::complete && found.problems[0].fault != HullFault::through_itself) {
+        findings_.push_back({"no-hull", sentence(found.problems[0], surface_.traits().owner()),
+                             "snug envelope makes a closed mesh around the surface, whatever it is"});
+      }
       answer.text = found.outcome != Outcome::complete
                         ? fmt::format("none, {}", name_of(found.problems[0].fault))
                         : fmt::format("{} triangles {} and {} {}", found.inner->triangles.size(),
@@ -126,7 +132,7 @@ class Judge {
     } catch (const Interrupted&) {
       if (stop_requested) throw;
       answer.word = "out-of-time";
-      answer.text = fmt::format("no answer within {} seconds", options_.seconds);
+      answer.text = fmt::format("no answer within {} seconds; --seconds N allows more", options_.seconds);
     } catch (const InputError& refusal) {
       answer.word = "refused";
       answer.text = refusal.what();
@@ -144,8 +150,9 @@ class Judge {
     const char* const owner = surface_.traits().owner();
     const auto place = [&](const SelfContactPair& pair) {
       const Point3& p = pair.points[0].point;
-      return fmt::format("{} {} and {}, at {:.6g} {:.6g} {:.6g}", owner, pair.points[0].at->owner,
-                         pair.points[1].at->owner, p.x, p.y, p.z);
+      const std::uint32_t a = pair.points[0].at->owner, b = pair.points[1].at->owner;
+      return fmt::format("{} {} {}, at {:.6g} {:.6g} {:.6g}", owner, a,
+                         a == b ? "with itself" : fmt::format("and {}", b), p.x, p.y, p.z);
     };
     const bool meets = found.verdict == SelfVerdict::intersecting;
     std::string text = meets ? "the surface meets itself: " : "not proved clear of itself: ";
