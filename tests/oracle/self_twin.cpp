@@ -193,6 +193,7 @@ bool crosses_near(TaggedMesh mesh, const WindingScheme& scheme, const Point& pla
   // Faces at high valences shrink by less than a half.
   constexpr double faces_around = 2;
   constexpr int whole = 2, small = 7, last = 18;
+  constexpr std::ptrdiff_t most_faces = 4000;
   const std::vector<bool> none(mesh.points.size());
   Region region{std::move(mesh), none};
   double reach = INFINITY, around = INFINITY;
@@ -205,6 +206,10 @@ bool crosses_near(TaggedMesh mesh, const WindingScheme& scheme, const Point& pla
       if (level == whole || box.is_within(box.diagonal(), place)) around = std::max(around, box.diagonal());
     }
     reach = std::max({std::min(reach / 2, 4 * faces_around * around), faces_around * around, within});
+    // Where faces around the place are much larger than those at it.
+    const auto is_near = [&](const Box& box) { return box.is_within(reach, place); };
+    while (reach > within && std::count_if(boxes.begin(), boxes.end(), is_near) > most_faces)
+      reach = std::max(reach / 2, within);
     region = cropped(region, boxes, place, reach);
     if (level >= small && crosses_itself(region)) return true;
   }
