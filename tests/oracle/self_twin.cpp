@@ -184,7 +184,7 @@ bool crosses_itself(const Region& region) {
     if (std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return region.marked[v]; })) continue;
     for (std::size_t k = 2; k < face.size(); ++k) triangles.push_back({face[0], face[k - 1], face[k]});
   }
-  return crossing_pair(region.mesh.points, triangles, 0, 0x1p-6).has_value();
+  return crossing_pair(region.mesh.points, triangles, 0, 0x1p-10).has_value();
 }
 
 }  // namespace
