@@ -44,9 +44,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Enclosures {
   std::vector<PatchEnclosure> pieces;
+  std::vector<NormalCone> cones;  // of each piece: NaN where none is proved
   BoundSummary summary;
 };
-auto members_of(Either<Enclosures> auto& t) { return std::tie(t.pieces, t.summary); }
+auto members_of(Either<Enclosures> auto& t) { return std::tie(t.pieces, t.cones, t.summary); }
 
 Enclosures bounded(const PySurface& self, const py::object& error, unsigned level, bool normals,
                    const py::object& max_splits, const py::object& threads, const py::object& progress) {
@@ -59,7 +60,12 @@ Enclosures bounded(const PySurface& self, const py::object& error, unsigned leve
   return call.run([&](const Run& run) {
     Enclosures result;
     result.summary = bound(
-        surface, options, [&](const PatchEnclosure& piece) { result.pieces.push_back(piece); }, run);
+        surface, options,
+        [&](const PatchEnclosure& piece) {
+          result.pieces.push_back(piece);
+          result.cones.push_back(piece.normals.value_or(NormalCone{{nan, nan, nan}, nan}));
+        },
+        run);
     return result;
   });
 }
@@ -113,17 +119,6 @@ py::array boxes_until(const PySurface& self, const py::object& end, unsigned lev
   });
 }
 
-// A column of cones: `count` numbers each, NaN where none is proved.
-py::array cones_of(const Enclosures& self, std::vector<py::ssize_t> shape, const auto& numbers) {
-  shape.insert(shape.begin(), static_cast<py::ssize_t>(self.pieces.size()));
-  py::array_t<double> result(shape);
-  double* out = result.mutable_data();
-  for (const PatchEnclosure& piece : self.pieces) {
-    for (const double x : numbers(piece.normals.value_or(NormalCone{{nan, nan, nan}, nan}))) *out++ = x;
-  }
-  return result;
-}
-
 void add_enclosures(py::module_& module) {
   py::class_<Enclosures> cls(module, "Enclosures",
                              "Sets that contain the pieces of a surface, n in all, in mesh units.");
@@ -171,30 +166,30 @@ void add_enclosures(py::module_& module) {
   };
   box_view("lower", 0, "Lower corners of three boxes whose convex hull contains the piece, (n, 3, 3).");
   box_view("upper", 1, "Upper corners of these boxes, (n, 3, 3).");
+  const auto cone_view = [&](const char* name, const auto& member, const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [member](const py::object& self) {
+          return column(std::span<const NormalCone>(self.cast<const Enclosures&>().cones), member, self);
+        },
+        doc);
+  };
+  cone_view(
+      "axis", [](const NormalCone& cone) -> const Vector3& { return cone.axis; },
+      "With normals=True: the surface has a normal at every point of the piece, at most `angle` from this "
+      "axis, (n, 3); NaN where that\n"
+      "is not proved.");
+  cone_view(
+      "angle", [](const NormalCone& cone) -> const double& { return cone.angle; },
+      "In radians, (n,); NaN likewise.");
   cls.def_property_readonly(
-         "axis",
+         "pieces",
          [](const Enclosures& self) {
-           return cones_of(self, {3}, [](const NormalCone& cone) {
-             return std::array{cone.axis.x, cone.axis.y, cone.axis.z};
-           });
+           py::list names;
+           for (const PatchEnclosure& piece : self.pieces) names.append(piece.piece);
+           return names;
          },
-         "With normals=True: the surface has a normal at every point of the piece, at most `angle` from this "
-         "axis, (n, 3); NaN where that\n"
-         "is not proved.")
-      .def_property_readonly(
-          "angle",
-          [](const Enclosures& self) {
-            return cones_of(self, {}, [](const NormalCone& cone) { return std::array{cone.angle}; });
-          },
-          "In radians, (n,); NaN likewise.")
-      .def_property_readonly(
-          "pieces",
-          [](const Enclosures& self) {
-            py::list names;
-            for (const PatchEnclosure& piece : self.pieces) names.append(piece.piece);
-            return names;
-          },
-          "Which piece of its patch: a list of words with a digit for each split.")
+         "Which piece of its patch: a list of words with a digit for each split.")
       .def_property_readonly(
           "outcome", [](const Enclosures& self) { return name_of(self.summary.outcome); },
           "'complete', 'budget-spent', or 'at-rounding' where 60 levels or rounding ended splitting.")
