@@ -10,6 +10,7 @@
 
 #include <snug/bounds/fit_kernels.h>
 #include <support/contract.h>
+#include <support/point.h>
 
 namespace snug {
 namespace {
