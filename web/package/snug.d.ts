@@ -17,7 +17,7 @@ export class SnugError extends Error {
 export type Data = string | ArrayBuffer | ArrayBufferView;
 export interface ReadOptions {
   /**
-   * Default, auto: flat for STL and glTF unless `sharp` is given; else that of the file if it names one; else loop if all
+   * Default, auto: flat for STL, glTF and 3MF unless `sharp` is given; else that of the file if it names one; else loop if all
    * faces are triangles, with a note, or catmark.
    */
   scheme?: Scheme | "auto";
