@@ -340,6 +340,7 @@ def test_refusals():
             raise AssertionError("one object was enough")
         except RuntimeError as error:
             assert "select" in str(error), error
+            assert "select" in answer()  # no older answer stays
     plain.modifiers.clear()
     assert not bpy.ops.snug.touch.poll()
     empty = new("empty", [(0, 0, 0)], [])

@@ -36,6 +36,7 @@ class Asking:
         try:
             lines = self.ask(context)
         except (cages.NoSurface, ArithmeticError, OSError, ValueError) as error:
+            context.scene.snug_answer = str(error)  # instead of an answer about other objects
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         context.scene.snug_answer = "\n".join(lines)
