@@ -507,7 +507,7 @@ test("tells mistakes of its callers", () => {
   deepEqual(star.notes, []);
   throws(() => snug.collide(star, star, { poseB: [1, 2, 3] }), { name: "SnugError", problem: "pose" });
   throws(() => snug.collide(star, star, { poseB: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0] }), { problem: "pose", message: /scales lengths by 2/ });
-  throws(() => snug.read("a.fbx", "x"), { problem: "unreadable", message: "a.fbx: meshes are read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf files only" });
+  throws(() => snug.read("a.xyz", "x"), { problem: "unreadable", message: "a.xyz: meshes are read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf files only" });
   throws(() => model("star.obj", { scheme: "butterfly" }), { problem: "value", message: /'butterfly' is not loop/ });
   throws(() => model("bracket.obj", { scheme: "doo-sabin", sharp: 30 }), { problem: "value", message: /has no creases/ });
   throws(() => snug.collide(star, {}), TypeError);
