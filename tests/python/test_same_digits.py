@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import PROGRAMS, ROOT
 from test_command import COMMAND
 
 import snug
@@ -122,7 +122,7 @@ def of_one(line, surface, folder):
 def test_questions_of_every_kind(tmp_path):
     answers = os.environ.get("SNUG_ANSWERS", tmp_path / "answers.jsonl")
     if "SNUG_ANSWERS" not in os.environ:
-        subprocess.run([sys.executable, ROOT / "tests/doors/ask.py", COMMAND, os.environ.get("SNUG_QUESTIONS", "12"), tmp_path], check=True)
+        subprocess.run([sys.executable, ROOT / "tests/doors/ask.py", COMMAND, os.environ.get("SNUG_QUESTIONS", "12"), tmp_path], check=True, env=PROGRAMS)
     counts = {}
     with open(answers) as file:
         for number, line in enumerate(map(json.loads, file), 1):

@@ -20,7 +20,7 @@ struct SurfaceQuad {
   std::array<std::uint32_t, 4> corners;  ///< names, as LimitSurface::corner_names() has them
   std::array<PatchSide, 4> sides;        ///< from corner k to the next one
   bool half = false;                     ///< its sides are halves: it comes from a first split
-  std::optional<TrianglePair> pair{};    ///< of a triangular scheme
+  std::optional<TriangleCouple> pair{};  ///< of a triangular scheme
 
   [[nodiscard]] std::size_t side_count() const { return pair && !pair->upper ? 3 : 4; }
   [[nodiscard]] std::size_t after(std::size_t side) const { return (side + 1) % side_count(); }
