@@ -3,8 +3,8 @@
 
 Checked: each #include <snug/...> against the order below, that it exists, that snug's headers are included in that form
 only, #pragma once, that public headers include public ones and the C++ standard library alone, that src/snug/CMakeLists.txt
-lists every source, that no room includes a library it should not know, and that the browser's library has what is used of std::ranges. `--self-test` plants each fault and expects it
-found.
+lists every source, that no room includes a library it should not know, that no two types of a namespace have one name, and that the browser's library has what is used of std::ranges.
+`--self-test` plants each fault and expects it found.
 """
 
 import argparse
@@ -137,9 +137,27 @@ def check_browser(root):
     return faults
 
 
+def check_types(root):
+    """Types of one name in one namespace: where the linker keeps one of two vectors, it handles both."""
+    seen, faults = {}, []
+    for path in [path for folder in ("include", "src") for path in cpp_files(root / folder)]:
+        namespaces = []
+        for number, line in enumerate(path.read_text(encoding="utf-8").split("\n"), 1):
+            if opened := re.match(r"namespace\s*([\w:]*) \{$", line):
+                namespaces.append(opened[1] or f"{path}")
+            elif line.startswith("}  // namespace"):
+                namespaces.pop()
+            elif (found := re.match(r"(?:struct|class|enum class) (?:SNUG_API )?(\w+)(?: final)?(?: :[^:].*)? \{", line)) and namespaces:
+                where = f"{path.relative_to(root)}:{number}"
+                first = seen.setdefault(("::".join(namespaces), found[1]), where)
+                if first != where:
+                    faults.append(f"{where}: {found[1]} is a type of {first}, too")
+    return faults
+
+
 def check_tree(root):
     """Faults of a whole checkout, as lines "file:line: what"."""
-    faults = check_public(root) + check_browser(root)
+    faults = check_public(root) + check_browser(root) + check_types(root)
     for folder in [root / "src" / SHARED, *sorted((root / "src/snug").iterdir())]:
         if folder.is_dir() and cpp_files(folder):
             if folder.name in ORDER:
@@ -199,7 +217,7 @@ GOOD_TREE = {
     "src/snug/independence/k.cpp": "#include <snug/independence/k.h>\n#include <snug/mesh/m.h>\n",
     "apps/research/a.cpp": "#include <snug/independence/k.h>\n",
     "tests/independence/k_test.cpp": "#include <snug/independence/k.h>\n",
-    "src/snug/io/r.h": "#pragma once\n",
+    "src/snug/io/r.h": "#pragma once\nnamespace snug {\nstruct R {\n};\n}  // namespace snug\n",
     "src/snug/io/r.cpp": "#include <support/a.h>\n#include <unistd.h>\n",
     "tests/oracle/o.h": "#pragma once\n#include <gmp.h>\n",
     "adapters/d.h": "#pragma once\n#include <dear.h>\n#include <snug/p.h>\n",
@@ -245,6 +263,7 @@ BAD_FILES = [
     ("tests/query/q_test.cpp", "#include <snug/query/q.h>\n", "q_test.cpp:1: tests of questions ask through public"),
     ("tests/testing/q.h", "#pragma once\n#include <snug/query/q.h>\n", "q.h:2: tests of questions ask through public"),
     ("src/snug/mesh/m.cpp", "#include <snug/adapters/d.h>\n", "mesh may not include adapters"),
+    ("src/snug/mesh/m.cpp", "namespace snug {\nclass R {\n};\n}  // namespace snug\n", "R is a type of src/snug/"),
 ]
 
 

@@ -60,8 +60,8 @@ std::uint32_t proved_kernel(const ExactScheme& scheme, std::uint32_t n, std::uin
 }
 
 // All faces around the faces of the fan.
-ControlNet whole_fan(const ExactScheme& scheme, std::uint32_t n) {
-  ControlNet net;
+NetPart whole_fan(const ExactScheme& scheme, std::uint32_t n) {
+  NetPart net;
   const std::uint32_t first = (is_loop(scheme) ? n + 1 : 2 * n + 1) + 1;  // of the outer points
   const auto s = [&](std::uint32_t i) { return first + i; };
   if (is_loop(scheme)) {
@@ -107,7 +107,7 @@ TEST(boundary_step, makes_the_points_of_subdivided_meshes) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for_all_faces(7, [&](const ExactScheme& scheme, std::uint32_t n, std::uint32_t i, bool corner) {
-    const ControlNet fan = whole_fan(scheme, n);
+    const NetPart fan = whole_fan(scheme, n);
     ControlMesh mesh;
     for (std::uint32_t p = 0; p < fan.points; ++p)
       mesh.points.push_back({anywhere(random), anywhere(random), anywhere(random)});
@@ -137,7 +137,7 @@ TEST(boundary_step, halves_a_lattice) {
   for_all_faces(5, [&](const ExactScheme& scheme, std::uint32_t n, std::uint32_t i, bool corner) {
     const bool straight = n == (is_loop(scheme) ? 3 : 2);
     if ((!corner && !straight) || (!is_loop(scheme) && n > 3)) return;
-    const ControlNet fan = whole_fan(scheme, n);
+    const NetPart fan = whole_fan(scheme, n);
     // Around the vertex at the origin: turns of 60 or 90 degrees, in coordinates along two edges.
     std::vector<Point3> lattice{{}};
     const auto turned = [&](double x, double y, std::uint32_t times) {

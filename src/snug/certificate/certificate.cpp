@@ -235,7 +235,7 @@ double CertificateWriter::near(double upper, const Place& a, const Place* b) {
 bool CertificateWriter::meet(const Place& a, const Place* b) {
   const auto name = [&](std::size_t side, const Place& at) {
     const CertifiedSurface& surface = *of_sides_[side];
-    return PieceName{surface.position_of(at.owner), surface.steps_to(at, max_place_steps)};
+    return CertifiedPiece{surface.position_of(at.owner), surface.steps_to(at, max_place_steps)};
   };
   return append_meeting(text_, sides_, {name(0, a), b ? std::optional(name(1, *b)) : std::nullopt}, monitor_);
 }

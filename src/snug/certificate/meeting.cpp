@@ -28,7 +28,7 @@ void append_steps(std::string& text, std::span<const std::size_t> steps) {
 // The pieces of one surface around a place, from its owner down.
 class Ladder {
  public:
-  Ladder(const CertifiedSide& side, PieceName name) : name_(std::move(name)) {
+  Ladder(const CertifiedSide& side, CertifiedPiece name) : name_(std::move(name)) {
     name_.steps.resize(std::min(name_.steps.size(), max_piece_level));
     discs_.emplace_back(side.pieces->only(name_.position), side.pose);
     for (const std::size_t k : name_.steps)
@@ -47,7 +47,7 @@ class Ladder {
   }
 
  private:
-  PieceName name_;
+  CertifiedPiece name_;
   std::vector<Disc> discs_;
 };
 
@@ -107,7 +107,7 @@ class Places {
  public:
   explicit Places(const std::array<CertifiedSide, 2>& sides) : sides_(sides) {}
 
-  using Names = std::array<std::optional<PieceName>, 2>;
+  using Names = std::array<std::optional<CertifiedPiece>, 2>;
 
   // Below the pieces of these names that are so many levels down.
   std::optional<Names> below(const Names& from, std::size_t level) {
@@ -172,7 +172,7 @@ class Places {
       if (pair[0].ends() && pair[1].ends()) {
         Names names;
         for (std::size_t k = 0; k < 2; ++k) {
-          if (pair[k].range) names[k] = PieceName{pair[k].position, pair[k].steps};
+          if (pair[k].range) names[k] = CertifiedPiece{pair[k].position, pair[k].steps};
         }
         return names;
       }
@@ -207,7 +207,7 @@ class Places {
 
 // At one place: each piece around it on either side against each on the other.
 bool append_at(std::string& text, const std::array<CertifiedSide, 2>& sides,
-               const std::array<std::optional<PieceName>, 2>& names, std::size_t& attempts,
+               const std::array<std::optional<CertifiedPiece>, 2>& names, std::size_t& attempts,
                const WorkMonitor& monitor) {
   const double magnitude = std::max(sides[0].magnitude, sides[1].magnitude);
   std::array<std::optional<Ladder>, 2> ladders;
@@ -242,7 +242,7 @@ bool append_at(std::string& text, const std::array<CertifiedSide, 2>& sides,
 }  // namespace
 
 bool append_meeting(std::string& text, const std::array<CertifiedSide, 2>& sides,
-                    const std::array<std::optional<PieceName>, 2>& hint, const WorkMonitor& monitor) {
+                    const std::array<std::optional<CertifiedPiece>, 2>& hint, const WorkMonitor& monitor) {
   std::size_t attempts = max_attempts;
   if (append_at(text, sides, hint, attempts, monitor)) return true;
   Places places(sides);

@@ -5,7 +5,7 @@
 namespace snug {
 
 /// A piece of a surface: where its owner stands in the order, and the children that lead to it.
-struct PieceName {
+struct CertifiedPiece {
   std::size_t position;
   std::vector<std::size_t> steps;
 };
@@ -14,7 +14,7 @@ struct PieceName {
 /// segment, the second one. `hint` names pieces of the surfaces that are near each other. False if none was found; nothing is
 /// then appended.
 [[nodiscard]] bool append_meeting(std::string& text, const std::array<CertifiedSide, 2>& sides,
-                                  const std::array<std::optional<PieceName>, 2>& hint,
+                                  const std::array<std::optional<CertifiedPiece>, 2>& hint,
                                   const WorkMonitor& monitor);
 
 }  // namespace snug

@@ -76,16 +76,17 @@ std::vector<Point3> corners_of(const Box3& box) {
   return corners;
 }
 
-Extent extent_along(std::span<const Point3> points, const Vector3& w) {
-  Extent extent{INFINITY, -INFINITY};
+namespace {
+
+double width_along(std::span<const Point3> points, const Vector3& w) {
+  double least = INFINITY, largest = -INFINITY;
   for (const Point3& p : points) {
     const double x = dot(w, p - Point3{});
-    extent = {std::min(extent.least, x), std::max(extent.largest, x)};
+    least = std::min(least, x);
+    largest = std::max(largest, x);
   }
-  return extent;
+  return largest - least;
 }
-
-namespace {
 
 using Whole = std::array<std::int64_t, 3>;
 
@@ -250,14 +251,7 @@ class Search {
                                          std::span<const Point3> b) const {
     if (pair.of[0] == nullptr || pair.of[1] == nullptr) return pair.of[0] == nullptr ? 1 : 0;
     const auto size = [&](std::span<const Point3> points) {
-      double sum = 0;
-      if (length_sq(pair.hint) > 0) {
-        const Extent extent = extent_along(points, pair.hint);
-        sum = extent.largest - extent.least;
-      } else {
-        sum = longest_side(box_of(points));
-      }
-      return sum;
+      return length_sq(pair.hint) > 0 ? width_along(points, pair.hint) : longest_side(box_of(points));
     };
     return size(a) >= size(b) ? 0 : 1;
   }

@@ -43,12 +43,6 @@ using AppendCrossing = std::function<bool(std::string& text, NetRange& piece)>;
                                       double margin, const ProofLimits& limits,
                                       const AppendCrossing& crossing = {});
 
-/// Points as a direction sees them.
-struct Extent {
-  double least, largest;
-};
-[[nodiscard]] Extent extent_along(std::span<const Point3> points, const Vector3& w);
-
 [[nodiscard]] Box3 box_of(std::span<const Point3> points);
 [[nodiscard]] std::vector<Point3> corners_of(const Box3& box);
 

@@ -320,7 +320,7 @@ class PieceCases {
   // All control points after two steps.
   bool closed(IndependenceCase& found) {
     const std::uint32_t n = corners_.valence;
-    const ControlNet net = closed_net(scheme_, n);
+    const NetPart net = closed_net(scheme_, n);
     RefinedNet once = refine(net, scheme_, n);
     Steps steps(mesh_step(refine(once.net, scheme_, n), once.net.points), field_, std::move(once.rows),
                 net.points);

@@ -13,7 +13,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 // Where a face has an edge in this direction: (face, corner at its begin).
 using DirectedEdges = std::map<Edge, std::pair<std::uint32_t, std::uint32_t>>;
 
-DirectedEdges directed_edges(const ControlNet& net) {
+DirectedEdges directed_edges(const NetPart& net) {
   DirectedEdges edges;
   for (std::uint32_t f = 0; f < net.faces.size(); ++f) {
     const auto& face = net.faces[f];
@@ -60,7 +60,7 @@ class WeightedRow {
 
 class NetRefinement {
  public:
-  NetRefinement(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order)
+  NetRefinement(const NetPart& net, const ExactScheme& scheme, std::uint32_t order)
       : net_(net), scheme_(scheme), order_(order), edges_(directed_edges(net)), out_(net.points) {
     for (const auto& [edge, at] : edges_) out_[edge.first].push_back(edge.second);
     result_.of_vertex.resize(net.points);
@@ -263,7 +263,7 @@ class NetRefinement {
     return row.take();
   }
 
-  const ControlNet& net_;
+  const NetPart& net_;
   const ExactScheme& scheme_;
   std::uint32_t order_;
   DirectedEdges edges_;
@@ -272,8 +272,8 @@ class NetRefinement {
 };
 
 // A triangle and all triangles at its corners; points as two_corner_net() has them.
-ControlNet triangle_with_ring(const std::vector<std::uint32_t>& valences) {
-  ControlNet net;
+NetPart triangle_with_ring(const std::vector<std::uint32_t>& valences) {
+  NetPart net;
   net.faces.push_back({0, 1, 2});
   net.points = 4;
   const std::uint32_t first = 3;
@@ -291,8 +291,8 @@ ControlNet triangle_with_ring(const std::vector<std::uint32_t>& valences) {
   return net;
 }
 
-ControlNet quad_with_ring(const std::vector<std::uint32_t>& valences) {
-  ControlNet net;
+NetPart quad_with_ring(const std::vector<std::uint32_t>& valences) {
+  NetPart net;
   net.faces.push_back({0, 1, 2, 3});
   net.points = 4;
   std::vector<std::vector<std::uint32_t>> ends(4),
@@ -313,8 +313,8 @@ ControlNet quad_with_ring(const std::vector<std::uint32_t>& valences) {
   return net;
 }
 
-ControlNet dual_fan(const std::vector<std::uint32_t>& sizes) {
-  ControlNet net;
+NetPart dual_fan(const std::vector<std::uint32_t>& sizes) {
+  NetPart net;
   net.points = 5;
   for (std::uint32_t i = 0; i < 4; ++i) {
     std::vector<std::uint32_t> face{0, 1 + i};
@@ -349,12 +349,12 @@ Weight twice_cosine(std::uint32_t j, std::uint32_t m, std::uint32_t order) {
   return {0, {{std::min(index, order - index), mpq_class(1)}}};
 }
 
-RefinedNet refine(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order) {
+RefinedNet refine(const NetPart& net, const ExactScheme& scheme, std::uint32_t order) {
   return NetRefinement(net, scheme, order).run();
 }
 
-std::vector<std::uint32_t> embedded(const ControlNet& net, std::array<std::uint32_t, 2> edge,
-                                    const ControlNet& larger, std::array<std::uint32_t, 2> larger_edge) {
+std::vector<std::uint32_t> embedded(const NetPart& net, std::array<std::uint32_t, 2> edge,
+                                    const NetPart& larger, std::array<std::uint32_t, 2> larger_edge) {
   const DirectedEdges own = directed_edges(net), others = directed_edges(larger);
   constexpr std::uint32_t none = UINT32_MAX;
   std::vector<std::uint32_t> image(net.points, none);
@@ -383,8 +383,8 @@ std::vector<std::uint32_t> embedded(const ControlNet& net, std::array<std::uint3
   return image;
 }
 
-ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n) {
-  ControlNet net;
+NetPart piece_net(const ExactScheme& scheme, std::uint32_t n) {
+  NetPart net;
   if (scheme.scheme == Scheme::loop) {
     net.points = n + 6;
     const auto p = [&](std::uint32_t number) { return number - 1; };
@@ -424,10 +424,10 @@ ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n) {
   return net;
 }
 
-ControlNet boundary_net(const ExactScheme& scheme, std::uint32_t n, const BoundaryFace& at) {
+NetPart boundary_net(const ExactScheme& scheme, std::uint32_t n, const BoundaryFace& at) {
   SNUG_EXPECT(!scheme.dual() && at.face >= 1 && at.face <= n);
   const bool loop = scheme.scheme == Scheme::loop, first = at.face == 1, last = at.face == n;
-  ControlNet net;
+  NetPart net;
   // The end of edge j of the fan, and with Catmull-Clark the far corner of the face after it.
   const auto e = [&](std::uint32_t j) { return loop ? 1 + j : 1 + 2 * j; };
   const auto f = [](std::uint32_t j) { return 2 + 2 * j; };
@@ -465,7 +465,7 @@ ControlNet boundary_net(const ExactScheme& scheme, std::uint32_t n, const Bounda
   return net;
 }
 
-ControlNet two_corner_net(const ExactScheme& scheme, const PieceCorners& corners) {
+NetPart two_corner_net(const ExactScheme& scheme, const PieceCorners& corners) {
   const bool loop = scheme.scheme == Scheme::loop;
   std::vector<std::uint32_t> valences(loop ? 3 : 4, loop ? 6 : 4);
   valences[0] = corners.valence;
@@ -474,8 +474,8 @@ ControlNet two_corner_net(const ExactScheme& scheme, const PieceCorners& corners
   return loop ? triangle_with_ring(valences) : quad_with_ring(valences);
 }
 
-ControlNet annulus_net(const ExactScheme& scheme, std::uint32_t n) {
-  ControlNet net;
+NetPart annulus_net(const ExactScheme& scheme, std::uint32_t n) {
+  NetPart net;
   if (scheme.scheme == Scheme::loop) {
     net.points = 3 * n + 1;
     const auto u = [&](std::uint32_t j) { return 1 + j % n; };
@@ -514,8 +514,8 @@ ControlNet annulus_net(const ExactScheme& scheme, std::uint32_t n) {
   return net;
 }
 
-ControlNet closed_net(const ExactScheme& scheme, std::uint32_t n) {
-  ControlNet net;
+NetPart closed_net(const ExactScheme& scheme, std::uint32_t n) {
+  NetPart net;
   if (scheme.scheme == Scheme::loop) {
     net.points = n + 2;
     for (std::uint32_t j = 0; j < n; ++j) {

@@ -15,7 +15,7 @@ namespace snug {
 
 /// A part of an oriented control mesh: its faces, counterclockwise. Points are 0 to points - 1. Edges of one face are where the
 /// part ends, or boundary edges of the mesh.
-struct ControlNet {
+struct NetPart {
   std::uint32_t points = 0;
   std::vector<std::vector<std::uint32_t>> faces;
   std::set<std::pair<std::uint32_t, std::uint32_t>> boundary = {};  ///< edges, the smaller end first
@@ -46,7 +46,7 @@ struct PieceCorners {
 
 /// A net one step finer: the points whose masks have all their points, and the faces of those.
 struct RefinedNet {
-  ControlNet net;
+  NetPart net;
   std::vector<WeightRow> rows;  ///< a point
   std::vector<std::optional<std::uint32_t>> of_vertex, of_face;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_edge;  ///< the smaller end first
@@ -59,30 +59,30 @@ struct RefinedNet {
 /// Requires:  a scheme of the four; triangles for Loop; manifold edges; the valence of each irrational mask divides `order`; no
 ///            boundary with dual schemes.
 /// Source:    [Wu05, sec. 2.2 to 2.5].
-[[nodiscard]] RefinedNet refine(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order);
+[[nodiscard]] RefinedNet refine(const NetPart& net, const ExactScheme& scheme, std::uint32_t order);
 
 /// Where the points of a net are in another one that contains it, given an edge of a face of each, in the direction of the
 /// face.
 /// Requires:  that it does.
-[[nodiscard]] std::vector<std::uint32_t> embedded(const ControlNet& net, std::array<std::uint32_t, 2> edge,
-                                                  const ControlNet& larger,
+[[nodiscard]] std::vector<std::uint32_t> embedded(const NetPart& net, std::array<std::uint32_t, 2> edge,
+                                                  const NetPart& larger,
                                                   std::array<std::uint32_t, 2> larger_edge);
 
 /// The control points of a piece with one extraordinary corner of valence n >= 3, as docs/independence.md numbers them, less
 /// one: n + 6 (Loop), 2 n + 8 (Catmull-Clark), n + 5 (dual schemes).
-[[nodiscard]] ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n);
+[[nodiscard]] NetPart piece_net(const ExactScheme& scheme, std::uint32_t n);
 /// Those of a face at a boundary vertex with `faces` faces, all else regular: faces + 7 (Loop), 2 faces + 9 (Catmull-Clark), one
 /// less for each of its edges at the vertex that is a boundary edge.
 ///
 /// Requires:  a primal scheme; 1 <= at.face <= faces.
-[[nodiscard]] ControlNet boundary_net(const ExactScheme& scheme, std::uint32_t faces, const BoundaryFace& at);
+[[nodiscard]] NetPart boundary_net(const ExactScheme& scheme, std::uint32_t faces, const BoundaryFace& at);
 /// Those of a piece with two extraordinary corners: the piece's own, counterclockwise, then around them; with dual schemes
 /// the vertex, its neighbours, then face by face.
-[[nodiscard]] ControlNet two_corner_net(const ExactScheme& scheme, const PieceCorners& corners);
+[[nodiscard]] NetPart two_corner_net(const ExactScheme& scheme, const PieceCorners& corners);
 /// Those of the n pieces around the corner.
-[[nodiscard]] ControlNet annulus_net(const ExactScheme& scheme, std::uint32_t n);
+[[nodiscard]] NetPart annulus_net(const ExactScheme& scheme, std::uint32_t n);
 /// A closed mesh with corners of valence n: the bipyramid (Loop), the trapezohedron (Catmull-Clark; the cube for n = 3), the
 /// prism (dual schemes).
-[[nodiscard]] ControlNet closed_net(const ExactScheme& scheme, std::uint32_t n);
+[[nodiscard]] NetPart closed_net(const ExactScheme& scheme, std::uint32_t n);
 
 }  // namespace snug

@@ -14,7 +14,7 @@ bool shares_vertex(const std::vector<std::uint32_t>& a, const std::vector<std::u
 }
 
 // Are all faces around the corners of a face there? Those at a boundary have two boundary edges.
-bool surrounded(const ControlNet& net, const std::vector<std::uint32_t>& corners,
+bool surrounded(const NetPart& net, const std::vector<std::uint32_t>& corners,
                 const std::vector<std::vector<std::uint32_t>>& around) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& face : around) {
@@ -29,7 +29,7 @@ bool surrounded(const ControlNet& net, const std::vector<std::uint32_t>& corners
 
 // Each control point of a regular piece: of its face (primal) and the faces around; with Loop's valence 3 one comes twice. At
 // a boundary those that are there: what else the polynomial has are combinations of them.
-std::vector<Functional> primal_functionals(const ControlNet& net, std::uint32_t face) {
+std::vector<Functional> primal_functionals(const NetPart& net, std::uint32_t face) {
   std::vector<std::vector<std::uint32_t>> around;
   std::set<std::uint32_t> points;
   for (const auto& other : net.faces) {
@@ -44,7 +44,7 @@ std::vector<Functional> primal_functionals(const ControlNet& net, std::uint32_t 
   return all;
 }
 
-std::vector<Functional> dual_functionals(const ControlNet& net, std::uint32_t vertex, bool midedge) {
+std::vector<Functional> dual_functionals(const NetPart& net, std::uint32_t vertex, bool midedge) {
   std::set<std::uint32_t> beside, diagonal;
   for (const auto& face : net.faces) {
     const auto at = std::find(face.begin(), face.end(), vertex);
@@ -64,13 +64,13 @@ std::vector<Functional> dual_functionals(const ControlNet& net, std::uint32_t ve
   return all;
 }
 
-std::vector<Functional> functionals(const ExactScheme& scheme, const ControlNet& net, std::uint32_t child) {
+std::vector<Functional> functionals(const ExactScheme& scheme, const NetPart& net, std::uint32_t child) {
   return scheme.dual() ? dual_functionals(net, child, scheme.scheme == Scheme::midedge)
                        : primal_functionals(net, child);
 }
 
 // `edge`: where the net's edge (0, 1) is in the finer one; `children`: the regular pieces.
-PieceStep kept_step(const ExactScheme& scheme, const ControlNet& net, const RefinedNet& fine,
+PieceStep kept_step(const ExactScheme& scheme, const NetPart& net, const RefinedNet& fine,
                     std::array<std::uint32_t, 2> edge,
                     const std::array<std::pair<std::uint32_t, std::uint32_t>, 3>& children) {
   const std::vector<std::uint32_t> kept = embedded(net, {0, 1}, fine.net, edge);
@@ -100,7 +100,7 @@ PieceStep kept_step(const ExactScheme& scheme, const ControlNet& net, const Refi
 
 PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t order) {
   using Children = std::array<std::pair<std::uint32_t, std::uint32_t>, 3>;
-  const ControlNet net = piece_net(scheme, n);
+  const NetPart net = piece_net(scheme, n);
   const RefinedNet fine = refine(net, scheme, order == 0 ? n : order);
   if (scheme.dual())
     return kept_step(scheme, net, fine, {fine.child.at({0, 0}), fine.child.at({0, 1})},
@@ -111,7 +111,7 @@ PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t o
 }
 
 PieceStep boundary_step(const ExactScheme& scheme, std::uint32_t faces, const BoundaryFace& at) {
-  const ControlNet net = boundary_net(scheme, faces, at);
+  const NetPart net = boundary_net(scheme, faces, at);
   const RefinedNet fine = refine(net, scheme, 1);
   const std::uint32_t face = at.face - 1;
   const std::uint32_t middle = scheme.scheme == Scheme::loop ? 3 : 2,
@@ -123,7 +123,7 @@ PieceStep boundary_step(const ExactScheme& scheme, std::uint32_t faces, const Bo
 TwoCornerStep two_corner_step(const ExactScheme& scheme, const PieceCorners& corners, std::uint32_t order) {
   const bool loop = scheme.scheme == Scheme::loop;
   SNUG_EXPECT(corners.second && !(loop && (corners.opposite || corners.valence + *corners.second < 7)));
-  const ControlNet net = two_corner_net(scheme, corners);
+  const NetPart net = two_corner_net(scheme, corners);
   const RefinedNet fine = refine(net, scheme, order);
   // Dual: at the vertex in each of its faces, where it is the first corner; primal: at the corners of the face.
   const auto child = [&](std::uint32_t i) {
@@ -141,7 +141,7 @@ TwoCornerStep two_corner_step(const ExactScheme& scheme, const PieceCorners& cor
     part.valence = i == 0 ? corners.valence : *corners.second;
     // An edge of each net from the corner along the piece, or around the face.
     const std::uint32_t next = (i + 1) % (loop ? 3 : 4);
-    const ControlNet own = piece_net(scheme, part.valence);
+    const NetPart own = piece_net(scheme, part.valence);
     const std::array<std::uint32_t, 2> edge{0, scheme.dual() ? 1 : loop ? part.valence : 3};
     const std::array<std::uint32_t, 2> fine_edge =
         scheme.dual()
@@ -153,7 +153,7 @@ TwoCornerStep two_corner_step(const ExactScheme& scheme, const PieceCorners& cor
 }
 
 PieceStep annulus_step(const ExactScheme& scheme, std::uint32_t n) {
-  const ControlNet net = annulus_net(scheme, n);
+  const NetPart net = annulus_net(scheme, n);
   RefinedNet fine = refine(net, scheme, n);
   PieceStep step;
   step.dimension = net.points;

@@ -47,7 +47,7 @@ BrepLayout::BrepLayout(const LimitSurface& surface)
 
 // The lower half has the corners 0, 1 and 2 of the square, the upper one 0, 2 and 3.
 void BrepLayout::add_quads_of_triangles() {
-  for (const TriangleCouple& pair : paired(surface_)) {
+  for (const PairedTriangles& pair : paired(surface_)) {
     SurfaceQuad quad{pair.lower, {none, none, none, none}, {}, false, pair};
     const auto names = surface_.corner_names(pair.lower);
     const auto sides = sides_of(surface_, pair.lower);

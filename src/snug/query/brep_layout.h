@@ -16,11 +16,11 @@ namespace snug {
 
 /// A quad of a surface: two patches. Of a triangular scheme a pair of triangles, or a single one, which has three sides.
 struct SurfaceQuad {
-  PatchId patch;                         ///< the first of them
-  std::array<std::uint32_t, 4> corners;  ///< names, as LimitSurface::corner_names() has them
-  std::array<PatchSide, 4> sides;        ///< from corner k to the next one
-  bool half = false;                     ///< its sides are halves: it comes from a first split
-  std::optional<TriangleCouple> pair{};  ///< of a triangular scheme
+  PatchId patch;                          ///< the first of them
+  std::array<std::uint32_t, 4> corners;   ///< names, as LimitSurface::corner_names() has them
+  std::array<PatchSide, 4> sides;         ///< from corner k to the next one
+  bool half = false;                      ///< its sides are halves: it comes from a first split
+  std::optional<PairedTriangles> pair{};  ///< of a triangular scheme
 
   [[nodiscard]] std::size_t side_count() const { return pair && !pair->upper ? 3 : 4; }
   [[nodiscard]] std::size_t after(std::size_t side) const { return (side + 1) % side_count(); }

@@ -42,7 +42,7 @@ class TriangleBrepMaker : public BrepMaker {
     unsigned side;
   };
   [[nodiscard]] PatchEdge edge_of(const QuadSide& s) const {
-    const TriangleCouple& pair = *layout_.quads()[s.quad].pair;
+    const PairedTriangles& pair = *layout_.quads()[s.quad].pair;
     const auto side = static_cast<unsigned>(s.side);
     if (side < 2 || !pair.upper) return {pair.lower, (side + pair.turn) % 3};
     return {*pair.upper, (side - 1 + pair.upper_turn) % 3};
@@ -88,7 +88,7 @@ class TriangleBrepMaker : public BrepMaker {
   // The two triangles of a quad that is turned by none or two quarters. Corner k of the lower half is then that of the upper one at
   // k + 1.
   [[nodiscard]] FaceSquare square_of(const PlacedQuad& placed) const {
-    const TriangleCouple& pair = *layout_.quads()[placed.quad].pair;
+    const PairedTriangles& pair = *layout_.quads()[placed.quad].pair;
     if (!pair.upper) return {{surface_.patch(pair.lower), pair.turn, SquareHalf::lower}, {}};
     if (placed.turn == 0) {
       return {{surface_.patch(pair.lower), pair.turn, SquareHalf::lower},
@@ -101,7 +101,7 @@ class TriangleBrepMaker : public BrepMaker {
   // Are all four triangles polynomials, with the same derivatives at both ends of the side?
   [[nodiscard]] bool continues(const QuadSide& s, const QuadSide& t) const {
     for (const std::uint32_t q : {s.quad, t.quad}) {
-      const TriangleCouple& pair = *layout_.quads()[q].pair;
+      const PairedTriangles& pair = *layout_.quads()[q].pair;
       if (!pair.upper || !surface_.kind(pair.lower).polynomial() || !surface_.kind(*pair.upper).polynomial())
         return false;
     }

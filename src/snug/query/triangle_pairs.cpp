@@ -22,12 +22,12 @@ class Pairing {
         mates_(surface.face_count(), no_half_edge),
         seen_(surface.face_count()) {}
 
-  std::vector<TriangleCouple> run() {
+  std::vector<PairedTriangles> run() {
     for (std::size_t f = 0; f < mates_.size(); ++f) grow_from(FaceId(f));
     for (std::size_t f = 0; f < mates_.size(); ++f) {
       if (is_free(FaceId(f))) exchange_from(FaceId(f));
     }
-    std::vector<TriangleCouple> pairs;
+    std::vector<PairedTriangles> pairs;
     for (std::size_t f = 0; f < mates_.size(); ++f) {
       if (!surface_.has_patch(PatchId(f))) continue;
       const HalfEdge h = mates_[f];
@@ -170,6 +170,6 @@ class Pairing {
 
 }  // namespace
 
-std::vector<TriangleCouple> paired(const LimitSurface& surface) { return Pairing(surface).run(); }
+std::vector<PairedTriangles> paired(const LimitSurface& surface) { return Pairing(surface).run(); }
 
 }  // namespace snug

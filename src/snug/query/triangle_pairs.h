@@ -10,7 +10,7 @@ namespace snug {
 
 /// Two triangles as a square, cut along its diagonal, or one of them as the lower half. Corners of the halves are those of SquareHalf;
 /// corner k is corner (k + turn) mod 3 of the patch.
-struct TriangleCouple {
+struct PairedTriangles {
   PatchId lower;
   std::uint8_t turn = 0;
   std::optional<PatchId> upper{};
@@ -21,6 +21,6 @@ struct TriangleCouple {
 /// are less than half a turn. Where the mesh is regular, diagonals are parallel. Of facets each by itself.
 /// Requires:  a triangular scheme.
 /// Cost:      linear; 0.1 to 0.3 microseconds a triangle.
-[[nodiscard]] std::vector<TriangleCouple> paired(const LimitSurface& surface);
+[[nodiscard]] std::vector<PairedTriangles> paired(const LimitSurface& surface);
 
 }  // namespace snug
