@@ -43,7 +43,7 @@ struct CommonOptions {
   bool quiet = false;
 };
 
-/// What is said of the option MESH.
+/// Help of the argument MESH.
 inline constexpr const char *mesh_help = "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF)",
                             *mesh_or_input_help =
                                 "Control mesh (OBJ, OFF, PLY, STL, USD, glTF or 3MF; - for standard input)";

@@ -34,6 +34,9 @@ TEST(step, strings_are_ascii) {
   EXPECT_EQ(step_string("m\xC3\xBC"), "'m\\X2\\00FC\\X0\\'");
   EXPECT_EQ(step_string("\xF0\x9F\x98\x80"), "'\\X4\\0001F600\\X0\\'");
   EXPECT_EQ(step_string("\xff\n"), "'\\X2\\00FF\\X0\\\\X2\\000A\\X0\\'");
+  // Beyond the last code point.
+  EXPECT_EQ(step_string("\xF7\x81\x81\x81"),
+            "'\\X2\\00F7\\X0\\\\X2\\0081\\X0\\\\X2\\0081\\X0\\\\X2\\0081\\X0\\'");
 }
 
 Brep square() {

@@ -530,7 +530,7 @@ bool is_flat(const oracle::TaggedMesh& mesh) {
   return true;
 }
 
-// What a body that meets itself does at the first place that is named, by refining it there alone.
+// Does a body meet itself at the first place that is named? By refining it there alone.
 bool is_shown(const Body& body, const SelfContactPair& pair, const oracle::TaggedMesh& coarse) {
   if (pair.touching) return coincide(coarse);
   if (is_flat(body.mesh)) return true;

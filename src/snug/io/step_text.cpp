@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include <snug/io/utf8.h>
 #include <support/number.h>
 
 namespace snug {
@@ -12,21 +13,6 @@ void append_hex(std::string& text, std::uint32_t number, int digits) {
 }
 
 }  // namespace
-
-std::u32string code_points(std::string_view utf8) {
-  std::u32string points;
-  for (std::size_t i = 0; i < utf8.size();) {
-    const auto lead = static_cast<unsigned char>(utf8[i]);
-    const std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc0 ? 1 : 0;
-    char32_t point = more == 0 ? lead : lead & (0x3fu >> more);
-    std::size_t k = 1;
-    for (; k <= more && i + k < utf8.size() && (static_cast<unsigned char>(utf8[i + k]) & 0xc0u) == 0x80; ++k)
-      point = point << 6 | (static_cast<unsigned char>(utf8[i + k]) & 0x3fu);
-    points += k == more + 1 ? point : char32_t{lead};
-    i += k == more + 1 ? k : 1;
-  }
-  return points;
-}
 
 void append_step_real(std::string& text, double x) {
   const std::size_t begin = text.size();

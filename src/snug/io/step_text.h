@@ -16,8 +16,6 @@ struct StepRef {
 
 /// Adds a real as ISO 10303-21 writes it, with a decimal point; it is read back as the same double.
 void append_step_real(std::string& text, double x);
-/// The code points of a UTF-8 text; bytes that are none are each one by themselves.
-[[nodiscard]] std::u32string code_points(std::string_view utf8);
 /// A quoted string; characters outside ASCII become \X2\...\X0\.
 [[nodiscard]] std::string step_string(std::string_view utf8);
 

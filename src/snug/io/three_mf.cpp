@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/io/step_text.h>
+#include <snug/io/utf8.h>
 #include <snug/io/xml.h>
 #include <snug/io/zip.h>
 #include <support/error.h>

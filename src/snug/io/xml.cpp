@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include <snug/io/utf8.h>
 #include <support/number.h>
 #include <support/text_cursor.h>
 
@@ -17,25 +18,6 @@ bool ends_name(char c) {
 }
 
 }  // namespace
-
-void append_utf8(std::string& text, std::uint32_t code) {
-  const auto byte = [&](std::uint32_t bits) { text += static_cast<char>(bits); };
-  if (code < 0x80) {
-    byte(code);
-  } else if (code < 0x800) {
-    byte(0xc0 | code >> 6);
-    byte(0x80 | (code & 0x3f));
-  } else if (code < 0x10000) {
-    byte(0xe0 | code >> 12);
-    byte(0x80 | (code >> 6 & 0x3f));
-    byte(0x80 | (code & 0x3f));
-  } else {
-    byte(0xf0 | code >> 18);
-    byte(0x80 | (code >> 12 & 0x3f));
-    byte(0x80 | (code >> 6 & 0x3f));
-    byte(0x80 | (code & 0x3f));
-  }
-}
 
 std::string_view XmlReader::prefix_of(std::string_view name) {
   const std::size_t colon = name.find(':');

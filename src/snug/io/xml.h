@@ -9,9 +9,6 @@
 
 namespace snug {
 
-/// Adds a code point as UTF-8.
-void append_utf8(std::string& text, std::uint32_t code);
-
 /// Walks over the elements of an XML text: 3MF and URDF need no more. Text between tags, comments and instructions are
 /// passed over.
 ///

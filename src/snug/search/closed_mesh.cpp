@@ -22,8 +22,6 @@ constexpr Index no_vertex = UINT32_MAX;
 constexpr double pull = 1e-3;
 // The least cosine between a triangle and what it becomes.
 constexpr double least_cosine = 0.5;
-// Of the largest cost: that of the square of an edge's length.
-constexpr double for_length = 1;
 // Meshes with as many triangles are collapsed in as many blocks of vertices first, side by side; then as a whole.
 constexpr std::size_t least_in_blocks = 8'000;
 constexpr Index block_count = 32;
@@ -189,8 +187,7 @@ class Simplifier {
     if (!is_finite(to)) return;
     const double cost = sum.at(to);
     // Of those that cost nothing the shortest first, not all at one vertex.
-    if (cost <= most_)
-      pass.queue.push({cost + for_length * most_ * length_sq(at(b) - at(a)), a, b, age_[a] + age_[b]});
+    if (cost <= most_) pass.queue.push({cost + most_ * length_sq(at(b) - at(a)), a, b, age_[a] + age_[b]});
   }
   // Where the vertex goes that an edge becomes; NaN where there is no such place.
   [[nodiscard]] Vector3 place(Index a, Index b, const Quadric& sum) const {
