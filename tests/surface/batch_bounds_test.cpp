@@ -34,13 +34,24 @@ void expect_near(const OffsetTriangle& actual, const OffsetTriangle& expected, d
   EXPECT_NEAR(actual.radius, expected.radius, 1e-12 * expected.radius + 1e-13 * size);
 }
 
-// Tips have boxes in the frame of the patch, where those of single patches are refined.
-void expect_about_as_wide(const OffsetTriangle& actual, const OffsetTriangle& single, double size) {
-  EXPECT_LE(actual.radius, 1.07 * single.radius + 1e-13 * size);
-  EXPECT_GE(actual.radius, 0.9 * single.radius - 1e-13 * size);
-}
+// Tips have boxes in the frame of the patch, and stick out of the rest by up to 15 %, where those of single patches are refined.
+// Few do.
+class AboutAsWide {
+ public:
+  void expect(const OffsetTriangle& actual, const OffsetTriangle& single, double size) {
+    EXPECT_LE(actual.radius, 1.19 * single.radius + 1e-13 * size);
+    EXPECT_GE(actual.radius, 0.9 * single.radius - 1e-13 * size);
+    all_ += actual.radius;
+    singles_ += single.radius;
+  }
+  ~AboutAsWide() { EXPECT_LE(all_, 1.02 * singles_); }
+
+ private:
+  double all_ = 0, singles_ = 0;
+};
 
 TEST(batch_bounds, are_those_of_single_patches) {
+  AboutAsWide widths;
   for (const oracle::TwinMesh& twin : twins()) {
     const LimitSurface surface = testing::surface_of(twin);
     for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
@@ -55,7 +66,7 @@ TEST(batch_bounds, are_those_of_single_patches) {
         if (method == BoundMethod::table || surface.kind(f).polynomial()) {
           expect_near(out[i], single, surface.size());
         } else {
-          expect_about_as_wide(out[i], single, surface.size());
+          widths.expect(out[i], single, surface.size());
         }
       }
     }
@@ -72,6 +83,7 @@ TEST(batch_bounds, of_irregular_patches_are_at_most_a_little_wider_than_of_singl
   bounds.update(surface.mesh().points, out);
   std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);
   BoundingPoints scratch;
+  AboutAsWide widths;
   std::size_t irregular = 0, same = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const PatchId f = bounds.patches()[i];
@@ -79,7 +91,7 @@ TEST(batch_bounds, of_irregular_patches_are_at_most_a_little_wider_than_of_singl
     if (surface.kind(f).polynomial()) continue;
     const OffsetTriangle single = unscaled(make_piece(surface.library(), f, surface.patch(f), scratch).offset,
                                            surface.scale().inverse());
-    expect_about_as_wide(out[i], single, surface.size());
+    widths.expect(out[i], single, surface.size());
     same += out[i].radius == single.radius;
     ++irregular;
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <snug/bounds/rows_kernel.h>
@@ -21,7 +22,7 @@ namespace snug::kernels::HWY_NAMESPACE {
 namespace {
 
 // How much tips may add to the radius of the rest, and to its height.
-constexpr double max_excess = 0.03;
+constexpr double max_excess = 0.15;
 
 // Boxes of a tip in the frame, [axis][corner of the table], with all errors.
 template <class V>
@@ -94,15 +95,15 @@ HWY_INLINE V into_frame(D d, const PlanarTriangle<V>& t, const Lanes& control, s
 
 // Points of patches as they come to be, level by level.
 struct Memory {
-  Lanes control, patch, tip[2], bezier;
+  Lanes control, patch, tip[2], middle, bezier;
   Memory(double* at, std::size_t lanes, const RowsWithTips& rows) {
-    for (Lanes* const part : {&control, &patch, &tip[0], &tip[1], &bezier}) {
+    for (Lanes* const part : {&control, &patch, &tip[0], &tip[1], &middle, &bezier}) {
       *part = {at, lanes};
       at += 3 * lanes * (part == &control ? rows.kind().control_count() : rows.most_points());
     }
   }
   [[nodiscard]] static std::size_t size(const RowsWithTips& rows, unsigned levels) {
-    return 3 * (rows.kind().control_count() + 3 * rows.most_points() + rows.bezier_count(levels));
+    return 3 * (rows.kind().control_count() + 4 * rows.most_points() + rows.bezier_count(levels));
   }
 };
 
@@ -130,17 +131,26 @@ HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, unsigned levels, const 
       upper = hn::Max(upper, p.z);
     }
   };
-  const LevelStep& first = rows.first_step();
+  const auto add_middle = [&](const RowsWithTips::Level& level, const Lanes& points) HWY_ATTR {
+    if (level.middle == nullptr) return;
+    const auto name = [&](std::uint32_t source) { return level.middle_control[source]; };
+    for (std::size_t r = 0; r < level.middle->points.row_count(); ++r) {
+      store(d, product(d, level.middle->points, r, points, name), memory.middle, r);
+    }
+    add_level(*level.middle, level.middle->bezier.row_count(), memory.middle);
+  };
+  const LevelStep& first = *rows.first().step;
   for (std::size_t r = 0; r < first.points.row_count(); ++r) {
     store(d, product(d, first.points, r, control), memory.patch, r);
   }
   add_level(first, first.bezier.row_count(), memory.patch);
+  add_middle(rows.first(), memory.patch);
   TipBoxes<V> boxes[RowsWithTips::most_tips];
   for (std::size_t i = 0; i < rows.tips().size(); ++i) {
     const RowsWithTips::Tip& tip = rows.tips()[i];
     NetLanes net{memory.patch, tip.control};
     for (unsigned level = 1; level < levels; ++level) {
-      const LevelStep& step = *tip.steps[level];
+      const LevelStep& step = *tip.levels[level].step;
       const Lanes& next = memory.tip[level % 2];
       const auto name = [&](std::uint32_t source) { return net.control[source]; };
       for (std::size_t r = 0; r < step.points.row_count(); ++r) {
@@ -148,7 +158,8 @@ HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, unsigned levels, const 
       }
       // The piece beyond is the middle one of the step before.
       add_level(step, step.inner, next);
-      net = {next, step.nets[0].control};
+      add_middle(tip.levels[level], next);
+      net = {next, tip.levels[level].tip_control};
     }
     boxes[i] = boxes_of(d, tip.table, net, point_error);
   }
@@ -214,28 +225,48 @@ HWY_EXPORT(FitRows);
 
 namespace {
 
-// each(level, kind, step) from a net at a corner on, as long as there is one net alone, at that corner.
+// The nets that a step leaves beside polynomials: at most one a corner, and a middle child that is made of polynomials after another.
+struct Nets {
+  std::vector<const LevelStep::Net*> tips;
+  const LevelStep::Net* middle = nullptr;
+};
+std::optional<Nets> nets_of(BoundsCache& library, const std::vector<LevelStep::Net>& nets) {
+  Nets result;
+  for (const LevelStep::Net& net : nets) {
+    if (net.corner < 3) {
+      result.tips.push_back(&net);
+    } else {
+      if (!library.level_step(*net.kind).nets.empty()) return std::nullopt;
+      result.middle = &net;
+    }
+  }
+  return result;
+}
+
+// each(level, kind, step) from a net at a corner on, as long as the only tip is at that corner.
 template <class Each>
 bool follow(BoundsCache& library, const LevelStep::Net& net, const Each& each) {
   const Kind* kind = net.kind;
   std::size_t corner = net.own;
   for (unsigned level = 1; level < RowsWithTips::most_levels; ++level) {
-    const LevelStep& step = library.level_step(*kind);
-    if (!step.goes_to(corner)) return false;
+    const LevelStep step = library.level_step(*kind);
+    const std::optional<Nets> nets = nets_of(library, step.nets);
+    if (!nets || nets->tips.size() != 1 || nets->tips.front()->corner != corner) return false;
     each(level, *kind, step);
-    kind = step.nets[0].kind;
-    corner = step.nets[0].own;
+    kind = nets->tips.front()->kind;
+    corner = nets->tips.front()->own;
   }
-  return net.corner < 3;
+  return true;
 }
 
 }  // namespace
 
 bool RowsWithTips::fit(BoundsCache& library, const Kind& kind) {
   if (!kind.cacheable() || kind.polynomial() || !has_self_similar_tips(kind)) return false;
-  const std::vector<LevelStep::Net> nets = library.level_step(kind).nets;
-  return nets.size() <= most_tips && std::all_of(nets.begin(), nets.end(), [&](const LevelStep::Net& net) {
-           return follow(library, net, [](unsigned, const Kind&, const LevelStep&) {});
+  const std::vector<LevelStep::Net> own = library.level_step(kind).nets;
+  const std::optional<Nets> nets = nets_of(library, own);
+  return nets && std::all_of(nets->tips.begin(), nets->tips.end(), [&](const LevelStep::Net* net) {
+           return follow(library, *net, [](unsigned, const Kind&, const LevelStep&) {});
          });
 }
 
@@ -253,16 +284,31 @@ RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind
     size *= std::max(1.0, step.points.max_abs_sum());
     error_of_largest_ = std::max(error_of_largest_, step.bezier.result_error(size, error));
   };
+  // A level of a kind, whose points are of this size and off by this error afterwards.
+  const auto level_of = [&](const Kind& of, const LevelStep& step, double& size, double& error) {
+    Level level{keep(of, step), {}, nullptr, {}};
+    pass_on(*level.step, size, error);
+    for (const LevelStep::Net& net : level.step->nets) {
+      if (net.corner < 3) {
+        level.tip_control = net.control;
+        continue;
+      }
+      level.middle = keep(*net.kind, library.level_step(*net.kind));
+      level.middle_control = net.control;
+      double size_there = size, error_there = error;
+      pass_on(*level.middle, size_there, error_there);
+    }
+    return level;
+  };
   double first_size = 2, first_error = enlarged(3 * gamma_bound(16));
-  const LevelStep& first = *keep(kind, library.level_step(kind));
-  pass_on(first, first_size, first_error);
-  for (const LevelStep::Net& net : first.nets) {
-    Tip& tip = tips_.emplace_back(Tip{net.control, {&first}, {}, {}});
+  first_ = level_of(kind, LevelStep(library.level_step(kind)), first_size, first_error);
+  for (const LevelStep::Net& net : first_.step->nets) {
+    if (net.corner == 3) continue;
+    Tip& tip = tips_.emplace_back(Tip{net.control, {first_}, {}, {}});
     const Kind* last = net.kind;
     double size = first_size, error = first_error;
     follow(library, net, [&](unsigned level, const Kind& of, const LevelStep& step) {
-      tip.steps[level] = keep(of, step);
-      pass_on(step, size, error);
+      tip.levels[level] = level_of(of, step, size, error);
       last = &of;
     });
     tip.table = flatten(library.tip_table(*last), *last, tip.columns);
@@ -271,9 +317,12 @@ RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind
 }
 
 std::size_t RowsWithTips::bezier_count(unsigned levels) const {
-  std::size_t count = first_step().bezier.row_count();
+  const auto count_of = [](const Level& level) {
+    return level.step->bezier.row_count() + (level.middle != nullptr ? level.middle->bezier.row_count() : 0);
+  };
+  std::size_t count = count_of(first_);
   for (const Tip& tip : tips_) {
-    for (unsigned level = 1; level < levels; ++level) count += tip.steps[level]->bezier.row_count();
+    for (unsigned level = 1; level < levels; ++level) count += count_of(tip.levels[level]);
   }
   return count;
 }

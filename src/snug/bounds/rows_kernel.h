@@ -19,21 +19,30 @@ class RowsWithTips {
   static constexpr unsigned least_levels = 3, most_levels = 6;
   static constexpr std::size_t most_tips = 3;
 
-  /// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips, one a corner?
+  /// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips, one a corner, beside which middle children
+  /// are made of polynomials, at the latest after another step?
   [[nodiscard]] static bool fit(BoundsCache& library, const Kind& kind);
   /// Requires:  fit(kind); kind and library outlive this.
   RowsWithTips(BoundsCache& library, const Kind& kind);
 
-  /// A piece that is no polynomial: its net, the steps that it takes from there, level by level, and the table of their last kind.
+  /// A step, and what it leaves: control points of the tip, if there is only one, and those of a middle child that is no polynomial,
+  /// as of a half beside an extraordinary corner of its quad, with the step that it takes.
+  struct Level {
+    const LevelStep* step;
+    std::span<const std::uint32_t> tip_control;
+    const LevelStep* middle;
+    std::span<const std::uint32_t> middle_control;
+  };
+  /// A piece that is no polynomial: its net, the levels from there on, and the table of their last kind.
   struct Tip {
     std::span<const std::uint32_t> control;
-    std::array<const LevelStep*, most_levels> steps;  // the first is the patch's
+    std::array<Level, most_levels> levels;  // the first is the patch's
     FlatTable table;
     std::vector<TableColumn> columns;
   };
   [[nodiscard]] const Kind& kind() const { return *kind_; }
   /// Of the patch itself.
-  [[nodiscard]] const LevelStep& first_step() const { return *steps_.front(); }
+  [[nodiscard]] const Level& first() const { return first_; }
   [[nodiscard]] const std::vector<Tip>& tips() const { return tips_; }
   /// At most, of a step.
   [[nodiscard]] std::size_t most_points() const { return most_points_; }
@@ -45,6 +54,7 @@ class RowsWithTips {
  private:
   const Kind* kind_;
   std::vector<std::unique_ptr<const LevelStep>> steps_;  // of the patch, then of tips
+  Level first_{};
   std::vector<Tip> tips_;
   std::size_t most_points_ = 0;
   double error_of_largest_ = 0;
@@ -55,7 +65,7 @@ class RowsWithTips {
 ///
 /// Guarantee: the patch lies in the offset triangle, whose corners are the limits of the patch's, moved along
 ///            their normal to the middle of what bounds it; in the kind's order of corners.
-///            No answer where farthest() has none, and where tips stick out of the rest by 3 %: more levels may
+///            No answer where farthest() has none, and where tips stick out of the rest by 15 %: more levels may
 ///            have one.
 /// Requires:  levels from least_levels to most_levels; control: rows.kind().control_count() vertices of `points` a
 ///            patch, in the kind's order; out.size() patches; points as in farthest().

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t chunk_size = 256;
 
 // Levels of rows that patches are tried with in turn.
-constexpr unsigned levels_of_rows[] = {3, 6};
+constexpr unsigned levels_of_rows[] = {3, 5};
 
 // One a thread; keeps its memory from call to call.
 struct Scratch {
