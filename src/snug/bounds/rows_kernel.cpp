@@ -243,16 +243,16 @@ std::optional<Nets> nets_of(BoundsCache& library, const std::vector<LevelStep::N
   return result;
 }
 
-// each(level, kind, step) from a net at a corner on, as long as the only tip is at that corner.
+// each(level, kind) from a net at a corner on, as long as the only tip is at that corner.
 template <class Each>
 bool follow(BoundsCache& library, const LevelStep::Net& net, const Each& each) {
   const Kind* kind = net.kind;
   std::size_t corner = net.own;
   for (unsigned level = 1; level < RowsWithTips::most_levels; ++level) {
-    const LevelStep step = library.level_step(*kind);
-    const std::optional<Nets> nets = nets_of(library, step.nets);
+    const std::vector<LevelStep::Net> own = library.level_step(*kind).nets;
+    const std::optional<Nets> nets = nets_of(library, own);
     if (!nets || nets->tips.size() != 1 || nets->tips.front()->corner != corner) return false;
-    each(level, *kind, step);
+    each(level, *kind);
     kind = nets->tips.front()->kind;
     corner = nets->tips.front()->own;
   }
@@ -266,16 +266,16 @@ bool RowsWithTips::fit(BoundsCache& library, const Kind& kind) {
   const std::vector<LevelStep::Net> own = library.level_step(kind).nets;
   const std::optional<Nets> nets = nets_of(library, own);
   return nets && std::all_of(nets->tips.begin(), nets->tips.end(), [&](const LevelStep::Net* net) {
-           return follow(library, *net, [](unsigned, const Kind&, const LevelStep&) {});
+           return follow(library, *net, [](unsigned, const Kind&) {});
          });
 }
 
 // Errors in units of the largest coordinate: derivations/rounding.md, "Batches".
 RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind) {
   std::map<const Kind*, const LevelStep*> known;
-  const auto keep = [&](const Kind& of, const LevelStep& step) {
+  const auto keep = [&](const Kind& of) {
     const LevelStep*& own = known[&of];
-    if (!own) own = steps_.emplace_back(std::make_unique<const LevelStep>(step)).get();
+    if (!own) own = steps_.emplace_back(std::make_unique<const LevelStep>(library.level_step(of))).get();
     most_points_ = std::max(most_points_, own->points.row_count());
     return own;
   };
@@ -285,15 +285,15 @@ RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind
     error_of_largest_ = std::max(error_of_largest_, step.bezier.result_error(size, error));
   };
   // A level of a kind, whose points are of this size and off by this error afterwards.
-  const auto level_of = [&](const Kind& of, const LevelStep& step, double& size, double& error) {
-    Level level{keep(of, step), {}, nullptr, {}};
+  const auto level_of = [&](const Kind& of, double& size, double& error) {
+    Level level{keep(of), {}, nullptr, {}};
     pass_on(*level.step, size, error);
     for (const LevelStep::Net& net : level.step->nets) {
       if (net.corner < 3) {
         level.tip_control = net.control;
         continue;
       }
-      level.middle = keep(*net.kind, library.level_step(*net.kind));
+      level.middle = keep(*net.kind);
       level.middle_control = net.control;
       double size_there = size, error_there = error;
       pass_on(*level.middle, size_there, error_there);
@@ -301,14 +301,14 @@ RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind
     return level;
   };
   double first_size = 2, first_error = enlarged(3 * gamma_bound(16));
-  first_ = level_of(kind, LevelStep(library.level_step(kind)), first_size, first_error);
+  first_ = level_of(kind, first_size, first_error);
   for (const LevelStep::Net& net : first_.step->nets) {
     if (net.corner == 3) continue;
     Tip& tip = tips_.emplace_back(Tip{net.control, {first_}, {}, {}});
     const Kind* last = net.kind;
     double size = first_size, error = first_error;
-    follow(library, net, [&](unsigned level, const Kind& of, const LevelStep& step) {
-      tip.levels[level] = level_of(of, step, size, error);
+    follow(library, net, [&](unsigned level, const Kind& of) {
+      tip.levels[level] = level_of(of, size, error);
       last = &of;
     });
     tip.table = flatten(library.tip_table(*last), *last, tip.columns);
