@@ -292,6 +292,65 @@ TEST(self_contact, of_pyramids_with_a_common_apex_is_clear_unless_they_meet_else
   }
 }
 
+// A flat sheet whose middle vertex is the tip of another one. Alone it is sharp there, and folds unless it is in balance; no plane has the
+// tip on its one side, and the sheet but for the vertex on the other.
+TEST(self_contact, of_a_flat_sheet_and_a_tip_at_one_vertex_is_decided_in_balance) {
+  for (const Scheme scheme : {Scheme::catmark, Scheme::loop}) {
+    const std::uint32_t n = scheme == Scheme::loop ? 6 : 4;
+    const auto sheets = [&](double height) {
+      // Lattices: each ring has its vertex as the mean.
+      const std::array<std::array<double, 2>, 6> hexagon{
+          {{2, 0}, {1, 2}, {-1, 2}, {-2, 0}, {-1, -2}, {1, -2}}};
+      const std::array<std::array<double, 2>, 8> square{
+          {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+      oracle::TaggedMesh mesh;
+      mesh.points.push_back({0, 0, 0});
+      for (const double up : {0.0, height}) {
+        const auto first = static_cast<std::uint32_t>(mesh.points.size());
+        for (std::uint32_t k = 0; k < (n == 6 ? 6 : 8); ++k) {
+          const auto& [x, y] = n == 6 ? hexagon[k] : square[k];
+          mesh.points.push_back({x, y, up * (std::fabs(x) + std::fabs(y))});
+        }
+        for (std::uint32_t k = 0; k < n; ++k) {
+          if (n == 6) {
+            mesh.polygons.push_back({0, first + k, first + (k + 1) % 6});
+          } else {
+            mesh.polygons.push_back({0, first + 2 * k, first + 2 * k + 1, first + (2 * k + 2) % 8});
+          }
+        }
+      }
+      return mesh;
+    };
+    for (const double height : {1.0, -0x1p-20}) {
+      const oracle::TaggedMesh mesh = sheets(height);
+      EXPECT_EQ(ask(mesh, scheme).verdict, SelfVerdict::clear) << name_of(scheme) << " " << height;
+      for (const double amount : {0x1p-3, 0x1p-51}) {
+        for (const std::size_t moved : {1, 2}) {
+          oracle::TaggedMesh off = mesh;
+          off.points[moved][0] += amount;
+          EXPECT_NE(ask(off, scheme, {}, {.max_splits = 2'000}).verdict, SelfVerdict::clear)
+              << name_of(scheme) << " " << height << ", " << moved << " moved by " << amount;
+        }
+      }
+      if (n == 4) {
+        // A plane through edges has the tip in front, and the corners, too, which are bent through it.
+        oracle::TaggedMesh bent = sheets(std::fabs(height) / 4);
+        for (const std::size_t corner : {2, 4, 6, 8}) bent.points[corner][2] = 2 * std::fabs(height);
+        EXPECT_NE(ask(bent, scheme, {}, {.max_splits = 2'000}).verdict, SelfVerdict::clear) << height;
+      }
+      // Through the sheet, and along it.
+      for (const double other : {-height, 0.0}) {
+        oracle::TaggedMesh through = mesh;
+        through.points[n == 6 ? 7 : 9][2] = 2 * other;
+        through.points.back()[2] = 2 * other;
+        if (other == 0) through.points[n == 6 ? 8 : 10][2] = 0;
+        EXPECT_NE(ask(through, scheme, {}, {.max_splits = 2'000}).verdict, SelfVerdict::clear)
+            << name_of(scheme) << " " << height << " through at " << other;
+      }
+    }
+  }
+}
+
 // Facets are compared exactly: every verdict is that of rational arithmetic, none is open.
 TEST(self_contact, of_facets_is_decided_always) {
   std::mt19937_64 random(21);

@@ -101,6 +101,20 @@ void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
     EXPECT_LE(widest(rest), 2 * net.error + 1e-6 * net.largest + 2 * off_of(level, rings.axes(level)))
         << "level " << level;
   }
+  // One net for some levels.
+  for (std::size_t level = 0; level < direct.size(); ++level) {
+    for (const std::size_t at_once : {2, 5, 9}) {
+      if (at_once > rings.rings_at_once(level) || level + at_once > direct.size()) continue;
+      const Patch net = rings.net(level, at_once);
+      const std::vector<double> own = centred(net);
+      for (std::size_t further = level; further < level + at_once; ++further) {
+        std::vector<double> rest = centred(direct[further], rings.axes(level), scale(further));
+        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= own[i];
+        EXPECT_LE(widest(rest), 1.001 * net.error + off_of(further, rings.axes(level)) + 1e-9 * net.largest)
+            << "level " << level << " and " << further;
+      }
+    }
+  }
   for (std::size_t level = 0; level < direct.size(); ++level) {
     const std::vector<Patch> nets = rings.all_further(level);
     const Patch& net = nets[0];

@@ -137,6 +137,67 @@ TEST(star, of_flat_quads_is_injective_unless_it_overlaps_itself) {
   EXPECT_GT(injective, 25);
 }
 
+// A flat fan around a vertex of its rim, with a low wall there, as CAD triangulates the caps of cylinders.
+TEST(star, of_an_uneven_fan_of_many_triangles_is_injective) {
+  for (const std::uint32_t sides : {24u, 60u}) {
+    oracle::TaggedMesh mesh;
+    for (const double z : {0.0, 0.1}) {
+      for (std::uint32_t k = 0; k < sides; ++k) {
+        const double angle = 2 * std::numbers::pi * k / sides;
+        mesh.points.push_back({std::cos(angle), std::sin(angle), z});
+      }
+    }
+    for (std::uint32_t k = 1; k + 1 < sides; ++k) {
+      mesh.polygons.push_back({0, k + 1, k});
+      mesh.polygons.push_back({sides, sides + k, sides + k + 1});
+    }
+    for (std::uint32_t k = 0; k < sides; ++k) {
+      mesh.polygons.push_back({k, (k + 1) % sides, sides + (k + 1) % sides});
+      mesh.polygons.push_back({k, sides + (k + 1) % sides, sides + k});
+    }
+    EXPECT_TRUE(injective_at_centre(mesh, 5)) << sides;
+  }
+}
+
+// Quads or triangles around a vertex that is sharp by itself, in a plane: it stays where it is.
+TEST(star, of_a_sharp_vertex_in_a_plane_is_injective_where_it_is_in_balance) {
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    for (std::uint32_t n = 3; n <= 8; ++n) {
+      oracle::TaggedMesh mesh;
+      mesh.points.push_back({0, 0, 0});
+      const std::uint32_t parts = scheme == Scheme::loop ? n : 2 * n;
+      for (std::uint32_t ring = 1; ring <= 3; ++ring) {
+        for (std::uint32_t i = 0; i < parts; ++i) {
+          const double angle = 2 * std::numbers::pi * i / parts;
+          mesh.points.push_back({ring * std::cos(angle), ring * std::sin(angle), 0});
+        }
+      }
+      for (std::uint32_t i = 0; i < parts; ++i) {
+        const std::uint32_t a = 1 + i, b = 1 + (i + 1) % parts;
+        if (scheme == Scheme::loop) {
+          mesh.polygons.push_back({0, a, b});
+        } else if (i % 2 == 0) {
+          mesh.polygons.push_back({0, a, b, 1 + (i + 2) % parts});
+        }
+        for (std::uint32_t ring = 0; ring < 2; ++ring) {
+          const std::uint32_t out = ring * parts;
+          if (scheme == Scheme::loop) {
+            mesh.polygons.push_back({out + a, out + parts + a, out + parts + b});
+            mesh.polygons.push_back({out + a, out + parts + b, out + b});
+          } else {
+            mesh.polygons.push_back({out + a, out + parts + a, out + parts + b, out + b});
+          }
+        }
+      }
+      mesh.corners.push_back({0, 10});
+      const LimitSurface surface = surface_of(mesh, scheme);
+      const CentreStar star = star_at_centre(surface, 2);
+      EXPECT_FALSE(certainly_injective(star.sectors, star.closed)) << name_of(scheme) << " " << n;
+      EXPECT_TRUE(certainly_injective(star.sectors, star.closed, true)) << name_of(scheme) << " " << n;
+    }
+  }
+}
+
 using Plane = std::array<double, 2>;
 
 // Do two convex polygons that turn left have more than their borders in common?

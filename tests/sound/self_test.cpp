@@ -493,6 +493,67 @@ TEST(self, verdicts_of_bent_quads_at_a_vertex_are_those_of_refined_ones) {
   }
 }
 
+// A flat fan, in balance or not, in a plane of lattice points, and another fan at the same vertex: on one side, or through the first.
+TEST(self, verdicts_of_fans_at_a_flat_one_are_those_of_refined_ones) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1) * testing::share(60));
+  std::mt19937_64 random(7);
+  std::map<std::string, int> counts;
+  for (int trial = 0; trial < trials; ++trial) {
+    const bool loop = trial % 2 == 0;
+    const std::uint32_t n = random() % 2 == 0 ? 4 : 6, around = loop ? n : 2 * n;
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0, 0, 0});
+    const double tilt_x = std::floor(4 * unit(random)), tilt_y = std::floor(4 * unit(random));
+    const int side = static_cast<int>(random() % 4);
+    for (std::uint32_t fan = 0; fan < 2; ++fan) {
+      for (std::uint32_t i = 0; i < around; ++i) {
+        const double angle = 2 * std::numbers::pi * i / around;
+        // Opposite ones are the same, turned over.
+        double x = std::round(64 * std::cos(angle)) + 0.0, y = std::round(64 * std::sin(angle)) + 0.0, up = 0;
+        if (i >= around / 2) {
+          const auto& other = mesh.points[mesh.points.size() - around / 2];
+          if (fan == 0) {
+            x = -other[0];
+            y = -other[1];
+          }
+        } else if (fan == 0) {
+          x += std::floor(16 * unit(random));
+          y += std::floor(16 * unit(random));
+        }
+        if (fan == 1)
+          up = std::floor(1 + 32 * unit(random)) * (side == 0 ? -1 : side == 1 && random() % 3 == 0 ? -1 : 1);
+        mesh.points.push_back({x, y, tilt_x * x + tilt_y * y + up});
+      }
+      const std::uint32_t first = 1 + fan * around;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        if (loop) {
+          mesh.polygons.push_back({0, first + i, first + (i + 1) % n});
+        } else {
+          mesh.polygons.push_back({0, first + 2 * i, first + 2 * i + 1, first + (2 * i + 2) % around});
+        }
+      }
+    }
+    const bool balanced = random() % 4 != 0;
+    if (!balanced) {
+      mesh.points[1][0] += 1;
+      mesh.points[1][2] += tilt_x;
+    }
+    const Scheme scheme = loop ? Scheme::loop : Scheme::catmark;
+    const SelfContact found =
+        self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {}, {.max_splits = 2'000});
+    oracle::Rules rules;
+    rules.scheme = loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+    const bool crossing = crosses(oracle::refine(mesh, rules, 4), 0.1);
+    ++counts[std::string(balanced ? "in balance, " : "not, ") + name_of(found.verdict) +
+             (crossing ? ", twin crosses" : ", twin does not")];
+    if (crossing || !balanced) {
+      EXPECT_NE(found.verdict, SelfVerdict::clear) << "trial " << trial;
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  EXPECT_GT(counts["in balance, clear, twin does not"], trials / 4);
+}
+
 // Two vertices of a refined mesh that are not one are in one place.
 bool coincide(const oracle::TaggedMesh& fine) {
   std::vector<oracle::Point> points = fine.points;

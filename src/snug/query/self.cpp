@@ -151,7 +151,8 @@ class VertexPairs {
 
  private:
   [[nodiscard]] bool is_injective(const LevelStar& fan) const {
-    return certainly_injective(sectors_of(pieces_, fan), fan.closed);
+    return certainly_injective(sectors_of(pieces_, fan), fan.closed,
+                               is_balanced(pieces_.model().surface(), fan));
   }
   [[nodiscard]] bool is_open(const NamePair& pair) const {
     return std::binary_search(live_.begin(), live_.end(), pair) && !found_.contains(pair);
@@ -186,7 +187,8 @@ class VertexPairs {
     LevelStar both{{a, b}};
     if (common_corners(complex_, a.piece, b.piece).size() == 1) {
       const std::vector<StarSector> sectors = sectors_of(pieces_, both);
-      return certainly_meet_only_at_vertex(sectors[0], sectors[1]);
+      return certainly_meet_only_at_vertex(sectors[0], sectors[1]) ||
+             (stays_in_place(sectors[0]) && are_parted_by_facet(pieces_.model().surface(), a, b));
     }
     complex_.put_in_order(both);
     return both.fan && is_injective(both);
@@ -344,14 +346,15 @@ class SelfSearch {
       budget_spent_ = true;
       return;
     }
-    for_each_with_pieces(model_, proved.count(), run_.threads, monitor_,
-                         [&](PieceCache& pieces, std::size_t i) {
-                           const LevelStar star = complex_.star(proved[i], level);
-                           const std::vector<StarSector> sectors = sectors_of(pieces, star);
-                           const bool holds = star.fan && certainly_injective(sectors, star.closed);
-                           proved.mark(i, holds);
-                           single.mark(i, !holds && (!star.fan || stays_in_place(sectors.front())));
-                         });
+    for_each_with_pieces(
+        model_, proved.count(), run_.threads, monitor_, [&](PieceCache& pieces, std::size_t i) {
+          const LevelStar star = complex_.star(proved[i], level);
+          const std::vector<StarSector> sectors = sectors_of(pieces, star);
+          const bool holds =
+              star.fan && certainly_injective(sectors, star.closed, is_balanced(surface_, star));
+          proved.mark(i, holds);
+          single.mark(i, !holds && (!star.fan || stays_in_place(sectors.front())));
+        });
     spend(proved.count());
     answer_.stars += proved.count();
     std::erase_if(live, [&](const NamePair& pair) {

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <tuple>
 
+#include <snug/geometry/double_double.h>
 #include <snug/geometry/exact_sign.h>
 #include <snug/query/self_pieces.h>
 #include <snug/shape/normal_cone.h>
@@ -104,7 +107,99 @@ int side_of(const Patch& piece, const Vector3& normal) {
   return along > 0.8 ? 1 : along < -0.8 ? -1 : 0;
 }
 
+// The vertex that a sector is at, if it is one of the mesh; of faces that are patches, and where all around it is smooth, or sharp for ever.
+std::optional<VertexId> vertex_of(const LimitSurface& surface, const LevelStar::Sector& sector) {
+  const auto& [piece, centre] = sector;
+  if (surface.after_first_split(piece.patch) || !surface.kind(piece.patch).key().plain()) return std::nullopt;
+  for (unsigned k = 0; k < piece.path.level(); ++k) {
+    if (piece.path.digit(k) != centre) return std::nullopt;
+  }
+  const std::uint32_t name = surface.corner_names(piece.patch)[centre];
+  if (name >= surface.topology().vertex_count()) return std::nullopt;
+  return VertexId(name);
+}
+
+// Are differences from a vertex added up to nothing? False where a sum is not a double.
+class Balance {
+ public:
+  void add(const Vector3& difference) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto [sum, rest] = exact_sum(sum_[a], difference[a]);
+      sum_[a] = sum;
+      exact_ = exact_ && rest == 0;
+    }
+  }
+  void add(const Point3& from, const Point3& to) {
+    for (std::size_t a = 0; a < 3; ++a) exact_ = exact_ && exact_sum(to[a], -from[a]).low == 0;
+    add(to - from);
+  }
+  [[nodiscard]] bool holds() const { return exact_ && sum_ == Vector3{}; }
+
+ private:
+  Vector3 sum_;
+  bool exact_ = true;
+};
+
 }  // namespace
+
+bool is_balanced(const LimitSurface& surface, const LevelStar& fan) {
+  if (!fan.fan || !fan.closed || !surface.rules().primal) return false;
+  const std::optional<VertexId> vertex = vertex_of(surface, fan.sectors[0]);
+  if (!vertex) return false;
+  const Point3& at = surface.scaled_point(*vertex);
+  Balance spokes, corners;
+  std::set<std::uint32_t> faces;
+  for (const LevelStar::Sector& sector : fan.sectors) {
+    const PatchId patch = sector.piece.patch;
+    if (vertex_of(surface, sector) != vertex) return false;
+    const Kind& kind = surface.kind(patch);
+    const CornerFan& corner = kind.corner((sector.centre + 3 - surface.first(patch)) % 3);
+    if (!corner.closed || !corner.sharp || corner.odd) return false;
+    if (!faces.insert(surface.place(patch).owner).second) continue;
+    const std::span<const VertexId> face = surface.topology().face(FaceId(surface.place(patch).owner));
+    const std::size_t count = face.size();
+    const auto own = static_cast<std::size_t>(std::find(face.begin(), face.end(), *vertex) - face.begin());
+    for (std::size_t k = 1; k < count; ++k) {
+      const VertexId other = face[(own + k) % count];
+      if (!scaled_exactly(surface, other)) return false;
+      (k == 1 || k + 1 == count ? spokes : corners).add(at, surface.scaled_point(other));
+    }
+  }
+  return scaled_exactly(surface, *vertex) && spokes.holds() && corners.holds();
+}
+
+bool are_parted_by_facet(const LimitSurface& surface, const LevelStar::Sector& a,
+                         const LevelStar::Sector& b) {
+  const std::optional<VertexId> vertex = vertex_of(surface, a);
+  if (!vertex || vertex_of(surface, b) != vertex || a.piece.path.level() + b.piece.path.level() > 0)
+    return false;
+  const Point3& at = surface.scaled_point(*vertex);
+  std::array<std::vector<VertexId>, 2> names;
+  surface.control_vertices(a.piece.patch, names[0]);
+  surface.control_vertices(b.piece.patch, names[1]);
+  for (std::vector<VertexId>& own : names) {
+    std::erase(own, *vertex);
+    for (const VertexId v : own) {
+      if (!may_be_signed(surface.scaled_point(v)) || !scaled_exactly(surface, v)) return false;
+    }
+  }
+  if (!may_be_signed(at) || !scaled_exactly(surface, *vertex)) return false;
+  const auto sides = [&](const Point3& p, const Point3& q, const std::vector<VertexId>& of) {
+    std::set<int> signs;
+    for (const VertexId v : of) signs.insert(orientation(at, p, q, surface.scaled_point(v)));
+    return signs;
+  };
+  for (const std::size_t s : {0, 1}) {
+    const std::vector<VertexId>&own = names[s], &other = names[1 - s];
+    for (std::size_t i = 1; i < own.size(); ++i) {
+      const Point3 &p = surface.scaled_point(own[i - 1]), &q = surface.scaled_point(own[i]);
+      const std::set<int> in_front = sides(p, q, other);
+      // p and q are in the plane.
+      if (in_front.size() == 1 && !sides(p, q, own).contains(*in_front.begin())) return true;
+    }
+  }
+  return false;
+}
 
 std::vector<PieceContact> coincident_vertices(const LimitSurface& surface) {
   std::vector<PieceContact> found;

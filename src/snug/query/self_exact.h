@@ -5,8 +5,8 @@
 
 #include <snug/patch/evaluate.h>
 #include <snug/search/piece_cache.h>
+#include <snug/surface/level_complex.h>
 #include <snug/surface/limit_surface.h>
-#include <snug/surface/piece_name.h>
 
 /// Contacts of a surface with itself that stand in its control points, exactly.
 /// Source:    derivations/self_contact.md, "In control points".
@@ -26,5 +26,14 @@ struct PieceContact {
 /// the patch meets itself, wherever. Empty if there is none, or only smaller pieces.
 /// Cost:      that of comparing control points, in space; a cone of normals for each patch, in a plane.
 [[nodiscard]] std::vector<PieceContact> flat_folds(const SurfaceBvh& model);
+
+/// Is a vertex of a closed fan, sharp by itself, with smooth edges, the mean of its edges' other ends, and of its faces' opposite corners?
+/// A smooth vertex would stay there, too.
+[[nodiscard]] bool is_balanced(const LimitSurface& surface, const LevelStar& fan);
+
+/// Of two root patches at a vertex that stays in place: is one behind a plane through it, or in it, and the other one in front, but for the
+/// vertex? Planes through control points are tried.
+[[nodiscard]] bool are_parted_by_facet(const LimitSurface& surface, const LevelStar::Sector& a,
+                                       const LevelStar::Sector& b);
 
 }  // namespace snug

@@ -13,7 +13,7 @@ namespace snug {
 namespace {
 
 // Levels that are followed. Share of the size below which what is left is not worth more of them.
-constexpr std::size_t max_rings = 700;
+constexpr std::size_t max_rings = 2000;
 constexpr double small_rest = 0x1p-24;
 
 // Constants last, and no extent sees them.
@@ -166,6 +166,13 @@ void RingValues::add_up(std::vector<double> parts) {
     }
     further_[level] = {shrinks.links > 0 ? twice : once, once};
   }
+  parts_ = std::move(parts);
+}
+
+double RingValues::next(std::size_t level, std::size_t steps) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < steps; ++k) sum = enlarged(sum + parts_[level + k]);
+  return sum;
 }
 
 CornerRings::CornerRings(const RingDecay& decay, const Patch& values)
@@ -240,13 +247,14 @@ std::array<Point2, 2> CornerRings::axes(std::size_t level) const {
   return {scale(level, 0) * axes_[0], scale(level, 1) * axes_[1]};
 }
 
-Patch CornerRings::net_of(std::size_t level, unsigned order, double RingValues::Sums::*sum) const {
+Patch CornerRings::net_of(std::size_t level, unsigned order, bool all_further,
+                          std::array<double, 2> added) const {
   Patch net;
   net.kind = decay_->kind;
   net.first = first_;
   for (std::size_t c = 0; c < 2; ++c) {
     RingValues::Level own = order == 0 ? values_[c].level(level) : values_[c].difference(level, order);
-    double off = own.off + (sum != nullptr ? values_[c].further(level).*sum : 0);
+    double off = own.off + added[c];
     if (grows_ && order == 0 && c == 1) {
       // Of all further nets at least this much; of one, no more than that.
       const Interval part = larger_part(level);
@@ -255,7 +263,7 @@ Patch CornerRings::net_of(std::size_t level, unsigned order, double RingValues::
         own.values[i] += part.lower * decay_->largest_column[i];
       own.largest = enlarged(own.largest + part.lower * of_column);
       off += part.lower * decay_->column_off + gamma_bound(3) * own.largest;
-      if (sum == nullptr) off += (part.upper - part.lower) * (of_column + decay_->column_off);
+      if (!all_further) off += (part.upper - part.lower) * (of_column + decay_->column_off);
     }
     const double by = scale(level, c);
     net.points.resize(own.values.size());
@@ -267,12 +275,23 @@ Patch CornerRings::net_of(std::size_t level, unsigned order, double RingValues::
   return net;
 }
 
-Patch CornerRings::net(std::size_t level) const { return net_of(level, 0, nullptr); }
+std::size_t CornerRings::rings_at_once(std::size_t level) const {
+  if (grows_ || decay_->links > 0) return 1;
+  return std::max<std::size_t>(std::min(values_[0].count(), values_[1].count()), level + 1) - level;
+}
+
+Patch CornerRings::net(std::size_t level, std::size_t rings) const {
+  return net_of(level, 0, false, {values_[0].next(level, rings - 1), values_[1].next(level, rings - 1)});
+}
+
+std::array<double, 2> CornerRings::further(std::size_t level, double RingValues::Sums::*sum) const {
+  return {values_[0].further(level).*sum, values_[1].further(level).*sum};
+}
 
 std::vector<Patch> CornerRings::all_further(std::size_t level) const {
-  std::vector<Patch> nets{net_of(level, 0, &RingValues::Sums::net)};
+  std::vector<Patch> nets{net_of(level, 0, true, further(level, &RingValues::Sums::net))};
   if (decay_->links > 0) {
-    nets.push_back(net_of(level, 1, &RingValues::Sums::chain));
+    nets.push_back(net_of(level, 1, true, further(level, &RingValues::Sums::chain)));
     // So that it is added no more often than the other one: i times q - 1, against q^i - 1.
     if (grows_) rescale(nets.back(), 1 / (decay_->ratio.lower - 1));
   }

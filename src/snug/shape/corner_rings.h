@@ -36,6 +36,8 @@ class RingValues {
   [[nodiscard]] const Sums& further(std::size_t level) const {
     return further_[level < count() ? level : count()];
   }
+  /// What the next `steps` levels add, where nothing grows. Requires that they are among count().
+  [[nodiscard]] double next(std::size_t level, std::size_t steps) const;
 
  private:
   void descend();
@@ -51,6 +53,7 @@ class RingValues {
   std::vector<Level> levels_;
   double all_off_ = 0;         // the sum of what each step was off
   double larger_off_ = 0;      // of a level, what larger rows may see
+  std::vector<double> parts_;  // what each level adds
   std::vector<Sums> further_;  // of each level, and, last, of those beyond
 };
 
@@ -67,15 +70,20 @@ class CornerRings {
   /// factor. They turn left.
   [[nodiscard]] std::array<Point2, 2> axes(std::size_t level) const;
   [[nodiscard]] double axis_off() const { return axis_off_; }  ///< relative to the axis
-  /// The net of one level.
-  [[nodiscard]] Patch net(std::size_t level) const;
+  /// The net of one level, or of so many from there on, up to its error: of `rings_at_once(level)` at most.
+  [[nodiscard]] Patch net(std::size_t level, std::size_t rings = 1) const;
+  /// 1 where nets grow.
+  [[nodiscard]] std::size_t rings_at_once(std::size_t level) const;
   /// Each net of a level and of all further ones, along that level's axes and over a positive factor, is the first of these plus c times
   /// each other one, its growth, up to their errors, for some c >= 0. Growths are the same for all, and of one row are one net of
   /// numbers times one vector. Of two the first one is that of a chain, whose c is at most the other one's.
   [[nodiscard]] std::vector<Patch> all_further(std::size_t level) const;
 
  private:
-  [[nodiscard]] Patch net_of(std::size_t level, unsigned order, double RingValues::Sums::*sum) const;
+  // `added` to the values of the level, or to their difference, along each axis.
+  [[nodiscard]] Patch net_of(std::size_t level, unsigned order, bool all_further,
+                             std::array<double, 2> added) const;
+  [[nodiscard]] std::array<double, 2> further(std::size_t level, double RingValues::Sums::*sum) const;
   [[nodiscard]] double scale(std::size_t level, std::size_t coordinate) const;
   [[nodiscard]] Interval larger_part(std::size_t level) const;
 

@@ -16,8 +16,8 @@ namespace snug {
 
 /// Levels that a patch is split to come to polynomials and to extraordinary corners.
 inline constexpr unsigned corner_levels = 6;
-/// Rings at an extraordinary corner that are looked at one by one.
-inline constexpr std::size_t max_single_rings = 600;
+/// Rings at an extraordinary corner that are looked at one by one, or some at once.
+inline constexpr std::size_t max_single_rings = 2000;
 
 inline double largest_of(Point2 a) { return std::max(std::fabs(a.x), std::fabs(a.y)); }
 

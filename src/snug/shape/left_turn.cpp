@@ -224,16 +224,23 @@ class LeftTurn {
       return true;
     };
     const CornerRings rings(tip, patch);
-    for (std::size_t ring = 0; ring < std::min(rings.count(), max_single_rings); ++ring) {
+    std::size_t at_once = 1;
+    for (std::size_t ring = 0; ring < std::min(rings.count(), max_single_rings); ring += at_once) {
       const std::vector<Patch> further = rings.all_further(ring);
       const bool may_hold = further.size() > 1 || further[0].error < max_net_share * further[0].largest;
       chain_turns_ = tip.links > 1;
       axes_ = rings.axes(ring);
       axis_off_ = rings.axis_off();
       if (may_hold && ring_holds(further)) return true;
-      const Patch net = rings.net(ring);
-      if (!ring_holds({&net, 1})) return false;
-      for (FanEnd& end : ends) end.descend();
+      at_once = std::min(2 * at_once, rings.rings_at_once(ring));
+      for (;; at_once /= 2) {
+        const Patch net = rings.net(ring, at_once);
+        if (ring_holds({&net, 1})) break;
+        if (at_once == 1) return false;
+      }
+      for (std::size_t k = 0; k < at_once; ++k) {
+        for (FanEnd& end : ends) end.descend();
+      }
     }
     return false;
   }

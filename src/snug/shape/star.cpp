@@ -344,8 +344,8 @@ void add_further_normals(const StarSector& sector, std::vector<Vector3>& normals
 class StarCheck {
  public:
   // Seen along a direction that suits this level, or all further ones, too.
-  StarCheck(std::span<const StarSector> sectors, bool closed, bool further)
-      : sectors_(sectors), closed_(closed), further_(further) {}
+  StarCheck(std::span<const StarSector> sectors, bool closed, bool further, bool balanced)
+      : sectors_(sectors), closed_(closed), further_(further), balanced_(balanced) {}
 
   [[nodiscard]] bool certainly_injective() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
@@ -407,10 +407,12 @@ class StarCheck {
       if (further_) add_further_normals(sector, normals);
     }
     if (closed_) spokes_.pop_back();
-    const std::optional<Spike> tip = spike();
+    std::optional<Spike> tip = spike();
     spike_ = tip.has_value();
-    normal = spike_ ? normalized(dot(normal, tip->along) < 0 ? -tip->along : tip->along)
-                    : seen_by_all(normalized(normal), normals);
+    // Exact nets have nothing of the spike, whatever they are seen along.
+    if (balanced_) tip.reset();
+    normal = tip ? normalized(dot(normal, tip->along) < 0 ? -tip->along : tip->along)
+                 : seen_by_all(normalized(normal), normals);
     if (normal == Vector3{}) return false;
     const Vector3 other = std::fabs(normal.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
     const Vector3 x = normalized(cross(other, normal)), y = cross(normal, x);
@@ -516,7 +518,7 @@ class StarCheck {
   }
 
   std::span<const StarSector> sectors_;
-  bool closed_, further_;
+  bool closed_, further_, balanced_;
   std::vector<Vector3> spokes_;  // closed: one a sector; open: one more
   bool spike_ = false;
   Frame frame_;
@@ -597,14 +599,14 @@ bool certainly_meet_only_at_vertex(const StarSector& a, const StarSector& b) {
   return false;
 }
 
-bool certainly_injective(std::span<const StarSector> sectors, bool closed) {
+bool certainly_injective(std::span<const StarSector> sectors, bool closed, bool balanced) {
   const auto grows = [](const StarSector& sector) {
     const std::optional<Patch> tip = at_tip(sector, decay_of);
     return tip && grows_along_one_direction(*decay_of(*tip->kind));
   };
-  return StarCheck(sectors, closed, false).certainly_injective() ||
+  return StarCheck(sectors, closed, false, balanced).certainly_injective() ||
          (std::any_of(sectors.begin(), sectors.end(), grows) &&
-          StarCheck(sectors, closed, true).certainly_injective());
+          StarCheck(sectors, closed, true, balanced).certainly_injective());
 }
 
 }  // namespace snug
