@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include <fmt/core.h>
@@ -23,8 +24,9 @@ namespace {
 
 constexpr double share_of_size = 0.01;  // errors and precisions of the questions
 constexpr std::size_t many_faces = 32;  // at a vertex: questions about what is near it take longer
-constexpr std::size_t max_findings = 12, max_defects = 3;
+constexpr std::size_t max_findings = 12;
 constexpr std::chrono::milliseconds look_again{20};
+constexpr const char* envelope_mends = "snug envelope makes a closed mesh around the surface, whatever it is";
 
 struct Options : CommonOptions {
   std::string mesh;
@@ -67,6 +69,13 @@ class TimeLimit {
   std::thread watch_;
 };
 
+// An interval in four digits: one number where they tell no more.
+std::string digits(const Interval& interval) {
+  const std::string lower = fmt::format("{:.4g}", interval.lower),
+                    upper = fmt::format("{:.4g}", interval.upper);
+  return lower == upper ? lower : fmt::format("{} to {}", lower, upper);
+}
+
 // The answer to a question: a word, and a line for people.
 struct Answer {
   const char* question;
@@ -98,8 +107,8 @@ class Judge {
       answer.word = name_of(found.outcome);
       // Where the surface goes through itself a note says so already.
       if (found.outcome != Outcome::complete && found.problems[0].fault != HullFault::through_itself) {
-        findings_.push_back({"no-hull", sentence(found.problems[0], surface_.traits().owner()),
-                             "snug envelope makes a closed mesh around the surface, whatever it is"});
+        findings_.push_back(
+            {"no-hull", sentence(found.problems[0], surface_.traits().owner()), envelope_mends});
       }
       answer.text = found.outcome != Outcome::complete
                         ? fmt::format("none, {}", name_of(found.problems[0].fault))
@@ -132,12 +141,13 @@ class Judge {
     } catch (const Interrupted&) {
       if (stop_requested) throw;
       answer.word = "out-of-time";
-      answer.text = fmt::format("no answer within {} seconds; --seconds N allows more", options_.seconds);
+      answer.text = "no answer; --seconds N allows more";
     } catch (const InputError& refusal) {
       answer.word = "refused";
       answer.text = refusal.what();
       if (const std::string head = std::string(name) + ": "; answer.text.starts_with(head))
         answer.text.erase(0, head.size());
+      answer.text.insert(0, "refused: ");
     }
     answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     answers_.push_back(std::move(answer));
@@ -155,25 +165,34 @@ class Judge {
                          a == b ? "with itself" : fmt::format("and {}", b), p.x, p.y, p.z);
     };
     const bool meets = found.verdict == SelfVerdict::intersecting;
-    std::string text = meets ? "the surface meets itself: " : "not proved clear of itself: ";
-    text += place(found.pairs[0]);
-    const std::string vertex = meets ? "" : vertex_at(surface_, *found.pairs[0].points[0].at);
+    const SelfContactPair& first = found.pairs[0];
+    std::string text = !meets           ? "not proved clear of itself: "
+                       : first.touching ? "the surface touches itself: "
+                                        : "the surface goes through itself: ";
+    text += place(first);
+    const std::string vertex = meets ? "" : vertex_at(surface_, *first.points[0].at);
     if (!vertex.empty()) text += " (" + vertex + ")";
     if (found.pairs.size() > 1) {
-      text += fmt::format(", and at {}{} more places",
+      text += fmt::format(", and in {}{} more places",
                           found.pairs.size() == SelfContact::max_pairs ? "at least " : "",
                           found.pairs.size() - 1);
     }
+    // Flat polygons with a corner that points inwards turn over there.
+    const bool turns_over = meets && !first.touching && surface_.scheme() == Scheme::catmark &&
+                            first.points[0].at->owner == first.points[1].at->owner &&
+                            surface_.mesh().face(FaceId(first.points[0].at->owner)).size() > 4;
     findings_.push_back({meets ? "meets-itself" : "self-contact-undecided", text,
-                         meets ? "snug envelope makes a closed mesh around it" : ""});
+                         !meets       ? ""
+                         : turns_over ? "--sharp auto splits flat faces that are not convex"
+                                      : envelope_mends});
   }
 
   void take_measures(const Run& run, Answer& answer) {
     const Measures found = measure(surface_, {.relative = share_of_size}, run);
     answer.word = name_of(found.outcome);
-    answer.text = fmt::format("area {:.4g} to {:.4g}", found.area.lower, found.area.upper);
+    answer.text = "area " + digits(found.area);
     if (!found.volume) return;
-    answer.text += fmt::format(", volume {:.4g} to {:.4g}", found.volume->lower, found.volume->upper);
+    answer.text += ", volume " + digits(*found.volume);
     if (found.volume->upper < 0) {
       findings_.push_back({"inside-out", "the volume is negative: faces look clockwise from outside", ""});
     }
@@ -189,14 +208,15 @@ void find_in_mesh(const ControlMesh& mesh, const MeshSummary& summary, const Opt
                   std::vector<Finding>& findings) {
   const MeshCounts& counts = summary.counts;
   const SchemeTraits& traits = traits_of(summary.scheme);
-  for (std::size_t i = 0; i < std::min(summary.defects.size(), max_defects); ++i) {
+  // They are in order, kind by kind.
+  for (std::size_t i = 0, end; i < summary.defects.size(); i = end) {
     const Defect& defect = summary.defects[i];
-    findings.push_back({name_of(defect.kind), defect.text, ""});
-  }
-  if (summary.defects.size() > max_defects) {
-    findings.push_back({"defects",
-                        fmt::format("{} more defects of the mesh", summary.defects.size() - max_defects),
-                        "snug info lists them"});
+    end = i + 1;
+    while (end < summary.defects.size() && summary.defects[end].kind == defect.kind) ++end;
+    const std::size_t more = end - i - 1;
+    findings.push_back({name_of(defect.kind),
+                        defect.text + (more > 0 ? fmt::format(", and {} more like it", more) : ""),
+                        more > 0 ? "snug info lists them" : ""});
   }
   if (summary.surface && options.scheme == "auto" && options.sharp.empty() && !traits.local) {
     const std::string line =
@@ -211,7 +231,7 @@ void find_in_mesh(const ControlMesh& mesh, const MeshSummary& summary, const Opt
     findings.push_back({"open",
                         fmt::format("open: {} boundary edges in {} border{}, so that there is no inside",
                                     counts.boundary_edges, counts.borders, counts.borders == 1 ? "" : "s"),
-                        "snug envelope makes a closed mesh around it"});
+                        envelope_mends});
   }
   if (summary.twice) findings.push_back({"overlapping-shell", overlap_sentence(summary), ""});
   if (counts.needles > 0) {
@@ -257,9 +277,11 @@ void write_json(JsonWriter& json, const MeshSummary& summary, const ControlMesh&
 ExitStatus run(const Options& options) {
   std::vector<Finding> findings;
   const std::optional<double> angle = sharp_angle(options);
-  ReadOptions reading{weld_distance(options), [&](const std::string& line) {
-                        findings.push_back({"file", line, ""});
-                      }};
+  ReadOptions reading{
+      weld_distance(options), [&](const std::string& line) {
+        const std::string head = options.mesh + ": ";
+        findings.push_back({"file", line.starts_with(head) ? line.substr(head.size()) : line, ""});
+      }};
   const WorkMonitor monitor = stopped_by_interrupts();
   ControlMesh mesh = read_mesh(options.mesh, reading, {.monitor = &monitor});
   set_units(mesh, options.mesh, options);
@@ -276,14 +298,17 @@ ExitStatus run(const Options& options) {
   const std::vector<std::string> lines = lines_of(summary, mesh, options.mesh, options);
   for (const std::string& line : lines) report.text(line);
   for (const Answer& answer : answers) {
-    report.text(fmt::format("{:12}  {}, in {:.{}f} s", answer.question, answer.text, answer.seconds,
+    report.text(fmt::format("{:12}  {}, {} {:.{}f} s", answer.question, answer.text,
+                            answer.word == "out-of-time" ? "after" : "in", answer.seconds,
                             answer.seconds < 1 ? 2 : 1));
   }
   // The lines say already why it is refused.
   std::erase_if(findings, [](const Finding& found) { return found.kind == std::string_view("refused"); });
+  std::set<std::string> said;  // what mends is said once
   for (std::size_t i = 0; i < std::min(findings.size(), max_findings); ++i) {
     const Finding& found = findings[i];
-    report.text("note: " + found.text + (found.mends.empty() ? "" : "; " + found.mends));
+    const bool is_new = !found.mends.empty() && said.insert(found.mends).second;
+    report.text("note: " + found.text + (is_new ? "; " + found.mends : ""));
   }
   if (findings.size() > max_findings) {
     report.text(fmt::format("and {} more; --json lists all", findings.size() - max_findings));

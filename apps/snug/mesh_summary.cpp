@@ -88,9 +88,9 @@ std::vector<std::string> lines_of(const MeshSummary& summary, const ControlMesh&
     open = "not closed";
     if (summary.surface) open += ": " + summary.surface->open_reason().value_or("");
   }
-  lines.push_back(fmt::format("{} vertices, {} edges, {} faces, {}, {} component{}", mesh.vertex_count(),
-                              counts.edges, mesh.face_count(), open, counts.components,
-                              counts.components == 1 ? "" : "s"));
+  lines.push_back(fmt::format("{} vertices, {} edges, {} face{}, {}, {} component{}", mesh.vertex_count(),
+                              counts.edges, mesh.face_count(), mesh.face_count() == 1 ? "" : "s", open,
+                              counts.components, counts.components == 1 ? "" : "s"));
   lines.push_back(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
                               counts.min_valence, counts.max_valence, counts.extraordinary,
                               traits.dual ? "faces" : "vertices", counts.boundary_edges, counts.creases));

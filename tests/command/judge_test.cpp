@@ -82,6 +82,8 @@ TEST_F(judge, names_what_is_wrong_and_what_mends_it) {
                                      "f 1 2 3 4\nf 6 7 5 9\nf 7 8 10 5\n")});
   EXPECT_TRUE(sheet.contains("t-junctions")) << json(sheet);
   EXPECT_EQ(sheet.at("coincident-vertices")["mends"], "--weld 0 merges them");
+  EXPECT_NE(sheet.at("meets-itself")["text"].get<std::string>().find("touches itself"), std::string::npos)
+      << sheet.at("meets-itself");
   EXPECT_NE(sheet.at("open")["text"].get<std::string>().find("2 borders"), std::string::npos)
       << sheet.at("open");
 
@@ -91,6 +93,12 @@ TEST_F(judge, names_what_is_wrong_and_what_mends_it) {
           .contains("inside-out"));
   EXPECT_TRUE(
       findings({write("needle.obj", "v 0 0 0\nv 1 0 0\nv 0.5 0.001 0\nf 1 2 3\n")}).contains("needles"));
+
+  const auto l_face =
+      findings({write("l.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n")});
+  ASSERT_TRUE(l_face.contains("meets-itself"));
+  EXPECT_NE(l_face.at("meets-itself")["mends"].get<std::string>().find("--sharp auto"), std::string::npos);
+  EXPECT_FALSE(findings({folder_.file("l.obj"), "--sharp", "auto"}).contains("meets-itself"));
 
   std::string fan = "v 0 0 1\n", faces;
   for (int k = 0; k < 40; ++k) {
