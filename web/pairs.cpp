@@ -231,6 +231,7 @@ val self_contact_of(const Part& part, const val& options) {
     SelfContactOptions how;
     how.within = option<double>(options, "within");
     how.radius = option<double>(options, "radius");
+    if (const auto levels = option<double>(options, "levels")) how.levels = index_of(*levels, "levels");
     const SelfContact answer = self_contact(part.surface(), how, run_of(options));
     const PlacedSurface surface(part.surface());
     return object_of(answer, std::array{surface, surface});

@@ -120,10 +120,15 @@ class PageRobot {
       std::vector<std::vector<double>> positions;
       const auto count = path["length"].as<std::size_t>();
       for (std::size_t i = 0; i < count; ++i) positions.push_back(positions_of(path[i]));
-      LinkContactsOptions how{.joined = option<bool>(options, "joined").value_or(false),
-                              .group = option<std::string>(options, "group").value_or("")};
-      if (const auto length = option<double>(options, "tolerance"))
-        how.tolerance = [=](double) { return *length; };
+      const auto length = [&](const char* name) -> std::function<double(double)> {
+        const auto given = option<double>(options, name);
+        if (!given) return {};
+        return [=](double) { return *given; };
+      };
+      const LinkContactsOptions how{.tolerance = length("tolerance"),
+                                    .margin = length("margin"),
+                                    .joined = option<bool>(options, "joined").value_or(false),
+                                    .group = option<std::string>(options, "group").value_or("")};
       val results = val::array();
       for (const LinkContact& each :
            snug::first_contacts(robot_, surfaces_, positions, how, run_of(options))) {

@@ -98,6 +98,11 @@ val tessellated(const Part& part, const val& options) {
     if (const auto most = option<double>(options, "maxTriangles")) {
       how.max_triangles = static_cast<std::uint64_t>(*most);
     }
+    how.max_thickness = option<double>(options, "maxThickness");
+    if (given(options, "view")) {
+      how.view = Viewpoint{point_of(options["view"]["eye"], "eye"),
+                           option<double>(options["view"], "angle").value_or(0)};
+    }
     return object_of(tessellate(part.surface(), how, run_of(options, 4'000'000)));
   });
 }
@@ -209,20 +214,26 @@ val enveloped(const Part& part, const val& options) {
     EnvelopeOptions how;
     how.error = option<double>(options, "error");
     how.clearance = option<double>(options, "clearance");
+    how.gap = option<double>(options, "gap");
     return object_of(envelope(part.surface(), how, run_of(options)));
   });
 }
 
-// Of a surface and {positions, triangles}.
+// Of a surface and another one, or {positions, triangles}.
 val deviation_of(const Part& part, const val& candidate, const val& options) {
   return guarded([&] {
     DeviationOptions how;
     how.absolute = option<double>(options, "absolute");
     how.threshold = option<double>(options, "threshold");
     how.solid = option<bool>(options, "solid").value_or(false);
-    const std::vector<double> numbers =
-        emscripten::convertJSArrayToNumberVector<double>(candidate["positions"]);
-    const auto corners = emscripten::convertJSArrayToNumberVector<double>(candidate["triangles"]);
+    if (given(candidate, "scheme")) {
+      const Surface other = candidate.as<std::shared_ptr<Part>>()->surface();
+      return object_of(deviation(part.surface(), other, how, run_of(options)));
+    }
+    if (!given(candidate, "positions") || !given(candidate, "triangles"))
+      throw InputError(InputProblem::value, "deviation: give a Surface, or positions and triangles");
+    const std::vector<double> numbers = list_of(candidate["positions"]);
+    const auto corners = list_of(candidate["triangles"]);
     std::vector<Point3> points;
     for (const double v : corners) {
       if (!(v >= 0 && v < static_cast<double>(numbers.size() / 3))) {

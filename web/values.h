@@ -144,8 +144,13 @@ std::vector<double> flat_points(const std::vector<Triple>& points) {
   return numbers;
 }
 
+// None where nothing was given.
+inline std::vector<double> list_of(const val& numbers) {
+  if (numbers.isUndefined() || numbers.isNull()) return {};
+  return emscripten::convertJSArrayToNumberVector<double>(numbers);
+}
 inline Vector3 vector_of(const val& numbers, const char* what) {
-  const std::vector<double> read = emscripten::convertJSArrayToNumberVector<double>(numbers);
+  const std::vector<double> read = list_of(numbers);
   if (read.size() != 3) throw InputError(InputProblem::value, std::string(what) + ": give three numbers");
   return {read[0], read[1], read[2]};
 }

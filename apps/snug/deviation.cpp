@@ -29,9 +29,6 @@ struct Options : CommonOptions {
 /// Triangles as they are, or a control mesh with its own limit surface.
 using Candidate = std::variant<std::vector<Triangle>, Surface>;
 
-/// Answer to --threshold: do both sets stay that near each other?
-enum class Within { yes, no, undecided };
-
 // Whatever else may be wrong with them does not matter: a set of triangles is all that is asked for.
 std::vector<Triangle> triangles_of(const ControlMesh& mesh, const std::string& path) {
   std::vector<Triangle> triangles;
@@ -79,20 +76,8 @@ Candidate read_candidate(const Options& options, std::optional<double>& units) {
   return triangles_of(mesh, path);
 }
 
-// Both distances are at most the tolerance, or one is greater: proved.
-Within within(const Deviation& answer, double tolerance) {
-  const Interval &there = answer.from_surface.distance, &back = answer.from_candidate.distance;
-  if (there.lower > tolerance || back.lower > tolerance) return Within::no;
-  return there.upper <= tolerance && back.upper <= tolerance ? Within::yes : Within::undecided;
-}
-
-const char* name_of(Within verdict) {
-  constexpr std::array names{"within", "exceeds", "undecided"};
-  return names[static_cast<std::size_t>(verdict)];
-}
-
 // With --exit-code.
-ExitStatus status_of(Within verdict) {
+ExitStatus status_of(DeviationVerdict verdict) {
   constexpr std::array statuses{ExitStatus::answered, ExitStatus::exceeds, ExitStatus::undecided};
   return statuses[static_cast<std::size_t>(verdict)];
 }
@@ -179,14 +164,14 @@ void write_text(Report& report, const Deviation& answer, const std::array<const 
 }
 
 // The verdict as a sentence for people.
-std::string sentence(Within verdict, double tolerance, Outcome outcome) {
+std::string sentence(DeviationVerdict verdict, double tolerance, Outcome outcome) {
   switch (verdict) {
-    case Within::yes:
+    case DeviationVerdict::within:
       return fmt::format("within: proved, no point of either is farther than {:.6g} from the other",
                          tolerance);
-    case Within::no:
+    case DeviationVerdict::exceeds:
       return fmt::format("exceeds: proved, a point of one is farther than {:.6g} from the other", tolerance);
-    case Within::undecided:
+    case DeviationVerdict::undecided:
       break;
   }
   return fmt::format("undecided: a distance is too close to {:.6g} to decide; {}", tolerance,
@@ -220,14 +205,12 @@ ExitStatus run(const Options& options) {
   const std::array<const Surface*, 2> surfaces{&surface, other};
   Report report("deviation", options);
   report.heads({options.mesh, options.candidate},
-               {snug::name_of(surface.scheme()), snug::name_of(other ? other->scheme() : Scheme::flat)});
-  std::optional<Within> verdict;
-  if (wanted.threshold) verdict = within(answer, *wanted.threshold);
+               {name_of(surface.scheme()), name_of(other ? other->scheme() : Scheme::flat)});
+  const std::optional<DeviationVerdict> verdict = answer.verdict;
   if (report.json()) {
     report.write().field("absolute", *wanted.absolute).key("threshold");
     wanted.threshold ? report.write().value(*wanted.threshold) : report.write().null();
-    report.write().key("verdict");
-    verdict ? report.write().value(name_of(*verdict)) : report.write().null();
+    write_field(report.write(), "verdict", verdict, {});
     write_answer(report.write(), answer, surfaces);
   }
   if (verdict) report.text(sentence(*verdict, *wanted.threshold, answer.outcome));
@@ -238,7 +221,7 @@ ExitStatus run(const Options& options) {
                     : "the precision was not reached: rounding is in the way; give a larger --absolute");
   }
   const ExitStatus status =
-      report.finish(verdict ? *verdict != Within::undecided : answer.outcome == Outcome::complete);
+      report.finish(verdict ? *verdict != DeviationVerdict::undecided : answer.outcome == Outcome::complete);
   return options.exit_code ? status_of(*verdict) : status;
 }
 

@@ -23,7 +23,8 @@ namespace snug::command {
 namespace {
 
 struct Options : CommonOptions {
-  std::string robot, joints, path, srdf, group, root, tolerance = "0.1%", primitive_error = "0.2%";
+  std::string robot, joints, path, srdf, group, root, tolerance = "0.1%", margin = "0",
+                                                      primitive_error = "0.2%";
   std::vector<std::string> packages;
   bool visual = false, joined = false, exit_code = false;
 };
@@ -123,6 +124,7 @@ class RobotRun {
  public:
   RobotRun(const Options& options) : options_(options), robot_(load_robot(options)) {
     tolerance_ = parse_length(options.tolerance, "--tolerance", true);
+    margin_ = parse_length(options.margin, "--margin", true);
     if (options.path.empty()) {
       positions_.push_back(joint_positions(robot_, given_positions(options.joints)));
     } else {
@@ -170,10 +172,15 @@ class RobotRun {
   [[nodiscard]] std::vector<LinkContact> ask_all() const {
     ProgressBar bar("moving", options_.quiet);
     const WorkMonitor monitor = bar.monitor();
-    const auto tolerance = [&](double size) { return tolerance_.in_mesh_units(size, 1.0); };
+    const auto of_size = [](const Length& length) {
+      return [&length](double size) { return length.in_mesh_units(size, 1.0); };
+    };
     return first_contacts(
         robot_, surfaces_, positions_,
-        {.tolerance = tolerance, .joined = options_.joined, .group = options_.group},
+        {.tolerance = of_size(tolerance_),
+         .margin = of_size(margin_),
+         .joined = options_.joined,
+         .group = options_.group},
         {.threads = options_.threads, .monitor = &monitor, .max_splits = options_.max_splits});
   }
 
@@ -212,7 +219,7 @@ class RobotRun {
 
   const Options& options_;
   Robot robot_;
-  Length tolerance_;
+  Length tolerance_, margin_;
   std::vector<std::vector<double>> positions_;
   std::vector<Surface> surfaces_;  // one a mesh
 };
@@ -245,6 +252,8 @@ Command robot_command() {
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Shapes this close may be reported as within; metres, percent of the larger mesh, or with a unit "
            "(0.1mm)");
+  list.add(Group::own, "--margin LENGTH", &options->margin,
+           "Contact is being at most so far apart; metres, percent of the larger mesh, or with a unit");
   list.add(Group::own, "--primitive-error PERCENT", &options->primitive_error,
            "How far meshes of cylinders and spheres may go beyond them, of the radius");
   list.add(Group::own, "--exit-code", &options->exit_code,

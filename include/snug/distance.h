@@ -116,12 +116,17 @@ struct OneSidedDistance {
   Point3 to;  ///< a point of the other set near it
 };
 
+/// Are both distances of a deviation at most the threshold, or is one greater?
+enum class DeviationVerdict : std::uint8_t { within, exceeds, undecided };
+[[nodiscard]] SNUG_API const char* name_of(DeviationVerdict verdict);
+
 /// How far a limit surface and a candidate meant to replace it deviate from each other.
 struct Deviation {
   OneSidedDistance from_surface;    ///< from points of the surface to the candidate
   OneSidedDistance from_candidate;  ///< from points of the candidate to the surface
   /// With `solid`: from the candidate's points inside, and from those outside; 0 if there are none.
   std::optional<OneSidedDistance> inside{}, outside{};
+  std::optional<DeviationVerdict> verdict{};  ///< with a threshold; proved unless undecided
   /// `complete` if each interval is as narrow as requested or, with a threshold, each comparison is decided.
   Outcome outcome = Outcome::complete;
 };

@@ -524,6 +524,7 @@ inline constexpr auto fields_of<Deviation> = std::tuple{
     Field{"from_candidate", &Deviation::from_candidate, "Of points of the candidate from the surface."},
     Field{"inside", &Deviation::inside, "With solid: how far the candidate lies inside."},
     Field{"outside", &Deviation::outside, "With solid: how far the candidate lies outside."},
+    Field{"verdict", &Deviation::verdict, "With a threshold: 'within', 'exceeds' or 'undecided'."},
     Field{
         "outcome", &Deviation::outcome,
         "'complete': each interval is as narrow as requested or, with a threshold, each question answered."},

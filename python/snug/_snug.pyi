@@ -249,6 +249,7 @@ class Robot:
         path: Sequence[Mapping[str, float]],
         *,
         tolerance: Length = "0.1%",
+        margin: Length = 0,
         joined: bool = False,
         group: str = "",
         max_splits: Optional[int] = None,
@@ -707,6 +708,8 @@ class Deviation:
     def inside(self) -> Optional[OneSidedDistance]: ...
     @property
     def outside(self) -> Optional[OneSidedDistance]: ...
+    @property
+    def verdict(self) -> Optional[str]: ...
     @property
     def outcome(self) -> str: ...
 

@@ -53,7 +53,7 @@ def view(
         raise TypeError("view: give surfaces and then, at most, one answer of collide or distance")
     if not all(isinstance(answer, (Collision, Distance)) for answer in answers):
         raise TypeError("view: an answer of collide or distance can be shown")
-    places = [_place(pose, i) for i, pose in enumerate(poses or [])]
+    places = [_place(pose, i) for i, pose in enumerate([] if poses is None else poses)]
     if len(places) > len(surfaces):
         raise ValueError(f"view: {len(places)} poses, but {len(surfaces)} surfaces")
     page = _page(template)

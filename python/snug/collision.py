@@ -161,6 +161,12 @@ def _side(objects: Tuple[_Placed, _Placed], name: str) -> int:
     raise ValueError(f"{name!r} is not one of the names {objects[0].name!r} and {objects[1].name!r}")
 
 
+def _objects_of(manager: Any) -> List[_Placed]:
+    if not isinstance(manager, CollisionManager):
+        raise TypeError(f"other_manager: give a snug.CollisionManager, not {type(manager).__name__}")
+    return manager._all()
+
+
 Names = Union[Set[str], Set[Tuple[str, str]]]
 
 
@@ -251,7 +257,7 @@ class CollisionManager:
         self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Does any object touch one of another manager? As above; pairs begin with the name in this one."""
-        found = list(self._contacts(_Pairs(self._all(), other_manager._all()), return_names or return_data))
+        found = list(self._contacts(_Pairs(self._all(), _objects_of(other_manager)), return_names or return_data))
         return self._answer(found, {(a.name, b.name) for a, b, _ in found}, return_names, return_data)
 
     def min_distance_single(
@@ -278,7 +284,7 @@ class CollisionManager:
     ) -> Any:
         """How far the objects are from another manager's, at least; with names as in in_collision_other()."""
         return self._nearest(
-            _Pairs(self._all(), other_manager._all()), return_names, return_data, lambda a, b: (a, b)
+            _Pairs(self._all(), _objects_of(other_manager)), return_names, return_data, lambda a, b: (a, b)
         )
 
     def _surface(self, mesh: Any) -> Surface:
@@ -378,6 +384,8 @@ def scene_to_collision(
 
     scheme, sharp: those of the manager.
     """
+    if not hasattr(scene, "graph") or not hasattr(scene, "geometry"):
+        raise TypeError(f"scene_to_collision: give an object with .graph and .geometry, such as a trimesh.Scene, not {type(scene).__name__}")
     manager = CollisionManager(scheme=scheme, sharp=sharp)
     surfaces: Dict[str, Surface] = {}
     made: Dict[Any, Surface] = {}

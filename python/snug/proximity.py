@@ -17,6 +17,7 @@ from typing import Any, Callable, List, Optional, Tuple, Union
 import numpy as np
 import numpy.typing as npt
 
+from ._convert import doubles
 from ._snug import Surface
 
 Floats = npt.NDArray[np.float64]
@@ -44,7 +45,7 @@ def as_surface(mesh: Any, scheme: Optional[str] = "auto", sharp: Sharp = None) -
 
 
 def _rows(given: Any, name: str) -> Floats:
-    array = np.asarray(given, dtype=np.float64)
+    array = doubles(given, name)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name} has the shape {array.shape}; give (n, 3)")
     return array

@@ -193,7 +193,10 @@ class AnswerClass {
 
 /// x in as few digits as tell it, at most `digits`.
 [[nodiscard]] std::string text_of(double x, int digits = 4);
-/// Both ends, with as many digits as tell them apart.
+/// Rounded up: the number is at most what is shown; or down.
+[[nodiscard]] std::string text_at_most(double x);
+[[nodiscard]] std::string text_at_least(double x);
+/// Both ends, with as many digits as tell them apart, rounded outward.
 [[nodiscard]] std::string text_of(const Interval& interval);
 
 }  // namespace snug::python

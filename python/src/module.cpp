@@ -18,19 +18,27 @@ std::string text_of(double x, int digits) {
   return text.data();
 }
 
+namespace {
+
+// Rounded up, where `way` is 1, or down.
+std::string rounded(double x, double way, int digits = 4) {
+  std::string text = text_of(x, digits);
+  const double shown = std::strtod(text.c_str(), nullptr);
+  if (digits < 17 && (shown - x) * way < 0)
+    text = text_of(shown + way * std::pow(10.0, std::floor(std::log10(std::fabs(x))) + 1 - digits), digits);
+  return text;
+}
+
+}  // namespace
+
+std::string text_at_most(double x) { return rounded(x, 1); }
+std::string text_at_least(double x) { return rounded(x, -1); }
+
 std::string text_of(const Interval& interval) {
-  // Rounded outward: what is shown contains the interval.
-  const auto outward = [](double x, int digits, double way) {
-    std::string text = text_of(x, digits);
-    const double shown = std::strtod(text.c_str(), nullptr);
-    if (digits < 17 && (shown - x) * way < 0)
-      text = text_of(shown + way * std::pow(10.0, std::floor(std::log10(std::fabs(x))) + 1 - digits), digits);
-    return text;
-  };
   std::string lower, upper;
   for (int digits = 4; digits <= 17; ++digits) {
-    lower = outward(interval.lower, digits, -1);
-    upper = outward(interval.upper, digits, 1);
+    lower = rounded(interval.lower, -1, digits);
+    upper = rounded(interval.upper, 1, digits);
     if (lower != upper || interval.lower == interval.upper) break;
   }
   return lower + " to " + upper;

@@ -108,7 +108,7 @@ Answers<Clearance> clearance_of(const PySurface& py_a, const py::object& motion_
 bool meets(const Answers<TimeOfContact>& self) {
   const TimeOfContact& answer = self.one();
   if (answer.verdict == Verdict::undecided) {
-    refuse_undecided("undecided: no contact before time " + text_of(answer.time.lower) +
+    refuse_undecided("undecided: no contact before time " + text_at_least(answer.time.lower) +
                      "; give a larger tolerance or max_splits");
   }
   return answer.verdict != Verdict::separated;

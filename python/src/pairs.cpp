@@ -241,7 +241,7 @@ constexpr const char* pose_doc =
     "stands beside n\n"
     "on the other.\n"
     "rigid=\"nearest\": what is not rigid within 1e-9 is replaced by the nearest rotation.\n"
-    "progress: called with the fraction done; what it raises ends the work.\n\n";
+    "progress: called with the fraction done, or True for a bar by tqdm; what it raises ends the work.\n\n";
 
 // Most calls of collide() name a few plain arguments: these are taken as they come, without what pybind11 does to sort out fifteen.
 // All others, and what goes wrong, are for the function that it made.

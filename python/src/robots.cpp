@@ -87,17 +87,24 @@ py::dict poses(const PyRobot& self, const py::object& positions) {
   return result;
 }
 
-py::list first_contacts(const PyRobot& self, const py::list& path, const py::object& tolerance, bool joined,
-                        const std::string& group, const py::object& max_splits, const py::object& threads,
-                        const py::object& progress) {
+// A length that may be percent of the size.
+std::function<double(double)> length_by_size(const py::object& given, const char* what) {
+  const std::optional<double> one = length_of(given, 1, what), two = length_of(given, 2, what);
+  if (!one) return {};
+  return [=](double size) { return *one == *two ? *one : *one * size; };
+}
+
+py::list first_contacts(const PyRobot& self, const py::list& path, const py::object& tolerance,
+                        const py::object& margin, bool joined, const std::string& group,
+                        const py::object& max_splits, const py::object& threads, const py::object& progress) {
   const Loaded& loaded = self.made();
   std::vector<std::vector<double>> positions;
   for (const auto& each : path)
     positions.push_back(positions_of(loaded.robot, py::reinterpret_borrow<py::object>(each)));
-  LinkContactsOptions options{.joined = joined, .group = group};
-  const std::optional<double> one = length_of(tolerance, 1, "tolerance"),
-                              two = length_of(tolerance, 2, "tolerance");
-  if (one) options.tolerance = [=](double size) { return *one == *two ? *one : *one * size; };
+  const LinkContactsOptions options{.tolerance = length_by_size(tolerance, "tolerance"),
+                                    .margin = length_by_size(margin, "margin"),
+                                    .joined = joined,
+                                    .group = group};
   Call call(progress, run_of(threads, max_splits));
   std::vector<LinkContact> found = call.run([&](const Run& run) {
     return snug::first_contacts(loaded.robot, loaded.surfaces, positions, options, run);
@@ -154,17 +161,17 @@ void add_robots(py::module_& module) {
            "metres}; joints\n"
            "that are not named are at 0, or at the limit nearest to it. Raises ValueError.")
       .def("first_contacts", first_contacts, arg("path"), py::kw_only(), arg("tolerance") = "0.1%",
-           arg("joined") = false, arg("group") = "", arg("max_splits") = none, arg("threads") = 0,
-           arg("progress") = none,
+           arg("margin") = 0, arg("joined") = false, arg("group") = "", arg("max_splits") = none,
+           arg("threads") = 0, arg("progress") = none,
            "Which links meet along a path of the joints? A list of (link, link, TimeOfContact), one for each "
            "two "
            "shapes that\n"
            "can move against each other; `link#2` where a link has several.\n\n"
            "path: positions as poses() takes them, one unit of time from each to the next, at constant "
            "speeds.\n"
-           "tolerance: metres, or percent of the larger one of two meshes. joined: also pairs of links that "
-           "a joint "
-           "joins.\n"
+           "tolerance, margin: metres, or percent of the larger one of two meshes; with a margin contact is "
+           "being at most\n"
+           "so far apart. joined: also pairs of links that a joint joins.\n"
            "group: only pairs with a link of this group of the SRDF file.\n\n"
            "Guarantee: no contact before `lower`, between the given positions too. Witnesses are in the "
            "frame of "

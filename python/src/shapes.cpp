@@ -200,7 +200,7 @@ void add_enclosures(py::module_& module) {
       .def("__len__", [](const Enclosures& self) { return self.pieces.size(); })
       .def("__repr__", [](const Enclosures& self) {
         return "<snug.Enclosures of " + std::to_string(self.pieces.size()) + " pieces, radius at most " +
-               text_of(self.summary.max_radius) + ">";
+               text_at_most(self.summary.max_radius) + ">";
       });
 }
 
@@ -282,7 +282,7 @@ void add_tessellation(py::module_& module) {
           "The `corner` that these belong to, (m,) uint32; empty without corners=True.")
       .def("__repr__", [](const Tessellation& self) {
         return "<snug.Tessellation of " + std::to_string(self.triangles.size()) +
-               " triangles, error at most " + text_of(self.error_bound) + ">";
+               " triangles, error at most " + text_at_most(self.error_bound) + ">";
       });
 }
 
@@ -319,7 +319,7 @@ void add_envelope(py::module_& module) {
   add_triangles(cls);
   cls.def("__repr__", [](const Envelope& self) {
     return "<snug.Envelope of " + std::to_string(self.triangles.size()) + " triangles, from " +
-           text_of(self.clearance) + " to " + text_of(self.error) + ">";
+           text_at_least(self.clearance) + " to " + text_at_most(self.error) + ">";
   });
 }
 
@@ -327,8 +327,8 @@ void add_hulls(py::module_& module) {
   py::class_<Hull> hull(module, "Hull", "Triangles on one side of a surface.");
   add_triangles(hull);
   hull.def("__repr__", [](const Hull& self) {
-    return "<snug.Hull of " + std::to_string(self.triangles.size()) + " triangles, gap " + text_of(self.gap) +
-           ">";
+    return "<snug.Hull of " + std::to_string(self.triangles.size()) + " triangles, gap " +
+           text_at_most(self.gap) + ">";
   });
   py::class_<Hulls> cls(module, "Hulls", "The inner and the outer hull of a surface: inner, outer = hulls.");
   add_fields(cls);

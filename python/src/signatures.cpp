@@ -103,8 +103,8 @@ void sign(py::handle object) {
   const std::string text = with_signature(record->name, parameters_of(*record, 0), record->def->ml_doc);
   std::free(const_cast<char*>(record->def->ml_doc));  // NOLINT: as pybind11 does, who made it by strdup()
   record->def->ml_doc = strdup(text.c_str());
-  // Functions of no arguments have no names to tell of.
-  if (record->args.empty()) return;
+  // Names of arguments that were not declared cannot be told.
+  if (record->args.empty() && record->nargs > (record->is_method ? 1U : 0U)) return;
   // By way of a type that compilers take for any function's.
   using Any = void (*)();
   dispatcher =
@@ -126,13 +126,26 @@ void sign_class(py::handle cls) {
   type->tp_doc = kept;
 }
 
+// Pybind11's own sentence names no way out.
+void refuse_to_make(py::handle cls) {
+  const auto name = cls.attr("__name__").cast<std::string>();
+  cls.attr("__init__") = py::cpp_function(
+      [name](const py::object&, const py::args&, const py::kwargs&) {
+        throw py::type_error(name + "() makes none: functions of snug return it");
+      },
+      py::name(name.c_str()), py::is_method(cls));
+}
+
 }  // namespace
 
 void add_signatures(const py::module_& module) {
   for (const auto& [name, thing] : py::reinterpret_borrow<py::dict>(module.attr("__dict__"))) {
     sign(thing);
     if (!py::isinstance<py::type>(thing)) continue;
-    for (const auto& item : py::dict(thing.attr("__dict__"))) {
+    const py::dict members(thing.attr("__dict__"));
+    const bool is_made = PyObject_TypeCheck(members["__init__"].ptr(), &PyWrapperDescr_Type) == 0;
+    if (!is_made) refuse_to_make(thing);
+    for (const auto& item : members) {
       const auto member = item.first.cast<std::string>();
       const bool is_static = PyObject_TypeCheck(item.second.ptr(), &PyStaticMethod_Type) != 0;
       if (member == "__init__") sign_class(thing);

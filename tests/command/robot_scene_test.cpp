@@ -54,6 +54,9 @@ TEST(robot_scene, first_contacts_along_a_path_have_times) {
   EXPECT_EQ(result["verdict"], "intersecting");
   EXPECT_GT(result["time"][0], 1.0);
   EXPECT_LT(result["time"][1], 2.0);
+  const Json near = Json::parse(run_snug({"scene", robot, "--path", path, "--margin", "5cm", "--json"}).out);
+  EXPECT_EQ(near["results"][0]["verdict"], "within");
+  EXPECT_LT(near["results"][0]["time"][1], result["time"][0]);
   const std::string srdf = write_text(
       folder.file("arm.srdf"), "<robot name='arm'><disable_collisions link1='lower' link2='base'/></robot>");
   EXPECT_EQ(

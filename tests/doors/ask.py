@@ -171,7 +171,7 @@ def solid_questions(command, count):
                 ("limit_to_faces", ["info"], {}),
                 ("bound", ["bound"], {"level": i % 2}),
                 ("tessellate", ["tessellate", "-o", out], {"error": 0.01 * size * (1 + i % 5)}),
-                ("deviation", ["deviation", out], {"absolute": 1e-3 * size}),
+                ("deviation", ["deviation", out], {"absolute": 1e-3 * size, **({"threshold": 0.03 * size} if i % 2 else {})}),
                 ("subdivided", ["subdivide", "-o", out.with_suffix(".finer.obj")], {"level": 1}),
                 ("envelope", ["envelope", "-o", out.with_suffix(".around.obj")], {"error": 0.3 * size}),
                 ("hull", ["hull", "--inner", inner, "--outer", outer], {"error": 0.05 * size}),

@@ -42,6 +42,7 @@ inline constexpr const char* name_in_types = "";
   inline constexpr const char* name_in_types<Type> = name
 SNUG_NAMED(Verdict, "Verdict");
 SNUG_NAMED(SelfVerdict, "SelfVerdict");
+SNUG_NAMED(DeviationVerdict, "DeviationVerdict");
 SNUG_NAMED(Outcome, "Outcome");
 SNUG_NAMED(HullFault, "HullFault");
 SNUG_NAMED(Point3, "Point");

@@ -149,9 +149,11 @@ json of_solid(const json& line, const Surface& surface) {
   if (ask == "envelope") return document_of(envelope(surface, {.error = error}), on);
   if (ask == "deviation") {
     const Deviation apart =
-        deviation(surface, triangles_of(line["candidate"]), {.absolute = option(line, "absolute")});
+        deviation(surface, triangles_of(line["candidate"]),
+                  {.absolute = option(line, "absolute"), .threshold = option(line, "threshold")});
     return {{"from_surface", document_of(apart.from_surface)},
             {"from_candidate", document_of(apart.from_candidate)},
+            {"verdict", apart.verdict ? json(name_of(*apart.verdict)) : json(nullptr)},
             {"outcome", name_of(apart.outcome)}};
   }
   if (ask == "limit_to_faces") {

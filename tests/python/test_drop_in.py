@@ -228,6 +228,8 @@ def test_queries_of_one_mesh(pawn):
 def test_shapes_are_refused(pawn, points):
     with pytest.raises(ValueError, match="shape"):
         proximity.closest_point(pawn, points)
+    with pytest.raises(TypeError, match="real numbers"):
+        proximity.closest_point(pawn, [[1j, 0, 0]])
 
 
 def test_odd_transforms_are_refused(manager):

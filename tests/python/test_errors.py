@@ -194,6 +194,11 @@ def test_values_that_do_not_fit(cube):
     (lambda a: a.closest_point(), "closest_point() needs 'points': closest_point(points, *"),
     (lambda a: snug.Surface(), "Surface() needs 'vertices': Surface(vertices, faces=None"),
     (lambda a: snug.Trajectory.through(), "through() needs 'poses': through(poses, *"),
+    (lambda a: snug.collide(a, a).any(1), "any() takes none by position, not 1: any()"),
+    (lambda a: snug.Distance(a, a), "Distance() makes none: functions of snug return it"),
+    (lambda a: snug.Mesh(), "Mesh() makes none: functions of snug return it"),
+    (lambda a: snug.CollisionManager().in_collision_other(a), "other_manager: give a snug.CollisionManager, not Surface"),
+    (lambda a: snug.collision.scene_to_collision(a), "scene_to_collision: give an object with .graph and .geometry"),
 ])
 def test_a_wrong_call_is_told_in_a_line(call, message, cube):
     with pytest.raises(TypeError) as error:
@@ -211,6 +216,17 @@ def test_errors_of_callbacks_stay_as_they_are(cube):
 
 def test_dir_shows_what_users_need():
     assert dir(snug) == sorted(snug.__all__)
+
+
+def test_numbers_in_a_repr_are_on_the_side_that_it_says(cube):
+    for share in range(1, 12):
+        triangles, wrap, boxes = cube.tessellate(0.013 * share), cube.envelope(0.11 + 0.013 * share), cube.bound(error=0.013 * share)
+        assert float(repr(triangles).split()[-1].rstrip(">")) >= triangles.error_bound
+        assert float(repr(boxes).split()[-1].rstrip(">")) >= boxes.max_radius
+        lower, upper = repr(wrap).rstrip(">").split(" from ")[1].split(" to ")
+        assert float(lower) <= wrap.clearance and float(upper) >= wrap.error
+        outer = cube.hull(0.013 * share).outer
+        assert float(repr(outer).split()[-1].rstrip(">")) >= outer.gap
 
 
 def test_intervals_are_not_rounded_shut(cube, bracket, pin):

@@ -3,6 +3,7 @@
 SNUG_FUZZ=N runs N cases of each.
 """
 
+import contextlib
 import pathlib
 import tempfile
 
@@ -104,6 +105,65 @@ def test_managers(a, b, pose):
         attempt(lambda: manager.allow(a, name))
     attempt(lambda: manager.in_collision_internal(return_names=True, return_data=True))
     attempt(lambda: manager.min_distance_internal(a))
+    other = snug.CollisionManager(tolerance=pose, relative=a, rigid=b, scheme=pose, sharp=a)
+    attempt(lambda: other.add_object("one", (CUBE, CUBE_FACES), moved(3)))
+    attempt(lambda: manager.set_transform(a, pose))
+    for mesh in (SOLID, a):
+        attempt(lambda: manager.in_collision_single(mesh, pose, return_data=True))
+        attempt(lambda: manager.min_distance_single(mesh, pose, return_data=True))
+    attempt(lambda: manager.in_collision_other(other, return_names=True))
+    attempt(lambda: manager.min_distance_other(other, return_names=True))
+    attempt(lambda: manager.is_allowed(a, b))
+    attempt(lambda: manager.remove_object(a))
+    attempt(lambda: snug.collision.scene_to_collision(pose, scheme=a, sharp=b))
+
+
+@given(anything, anything, st.sampled_from(["max_sphere", "ray", ""]))
+def test_proximity(points, directions, method):
+    of = snug.proximity
+    for ask in (of.closest_point, of.closest_point_naive, of.nearby_faces, of.signed_distance, of.reach):
+        attempt(lambda: ask(SOLID, points))
+    attempt(lambda: of.closest_point(directions, points, scheme=points, sharp=method))
+    attempt(lambda: of.longest_ray(SOLID, points, directions))
+    attempt(lambda: of.max_tangent_sphere(SOLID, points, normals=directions, threshold=1e-2, max_iter=3))
+    attempt(lambda: of.thickness(SOLID, points, directions, normals=directions, method=method))
+    query = of.ProximityQuery(SOLID)
+    for ask in (query.on_surface, query.vertex, query.signed_distance):
+        attempt(lambda: ask(points))
+
+
+MANY = snug.collide(SOLID, SOLID, pose_b=[moved(1), moved(3)]), SOLID.closest_point(CUBE), SOLID.bound(level=1)
+
+
+@given(anything, anything, st.one_of(st.integers(-3, 3), st.slices(4), anything))
+def test_paths_and_places(poses, time, which):
+    path = attempt(lambda: snug.Trajectory.through(poses)) or snug.Trajectory.through([moved(3), moved()])
+    attempt(lambda: path.at(time))
+    attempt(lambda: snug.Trajectory.through(poses, rigid=time))
+    attempt(lambda: snug.view(SOLID, poses=poses, template=time))
+    deep = attempt(lambda: snug.penetration(SOLID, SOLID, pose_b=poses, relative=time, max_splits=50))
+    if deep is not None:
+        assert (np.asarray(deep.lower) <= deep.upper).all()
+    for many in MANY:
+        with contextlib.suppress(IndexError):
+            attempt(lambda: many[which])
+            attempt(lambda: MANY[0][which].any())
+            attempt(lambda: MANY[0][which].all())
+
+
+@given(st.one_of(st.binary(max_size=64), st.text(max_size=64)), st.sampled_from([".obj", ".off", ".ply", ".stl", ".usda", ".glb", ".gltf", ".3mf", ""]), anything)
+def test_files(content, ending, option):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / f"mesh{ending}"
+        file.write_bytes(content if isinstance(content, bytes) else content.encode(errors="surrogatepass"))
+        attempt(lambda: snug.read(file))
+        attempt(lambda: snug.read_assembly(file))
+        attempt(lambda: snug.read(option, scheme=option, sharp=content))
+        attempt(lambda: SOLID.write(file))
+        attempt(lambda: SOLID.subdivided(1).write(file))
+        attempt(lambda: snug.read(file).measure(relative=0.1, max_splits=100))
+        attempt(lambda: SOLID.write_step(file, error=option))
+        attempt(lambda: SOLID.write_step(file, error="5%", name=content, max_splits=100))
 
 
 @given(anything, anything, anything, anything)
@@ -113,6 +173,10 @@ def test_contacts_and_meshes(pose, within, error, mesh):
     attempt(lambda: snug.inspect(CUBE, mesh))
     attempt(lambda: SOLID.envelope(error, clearance=within, gap=mesh, max_splits=100))
     attempt(lambda: SOLID.topology_of(within, error))
+    attempt(lambda: SOLID.boxes(error, end=mesh, threads=1))
+    attempt(lambda: SOLID.subdivided(within, limit=error))
+    attempt(lambda: SOLID.limit_to_faces(threads=mesh))
+    attempt(lambda: SOLID.measure(relative=error, max_splits=within))
 
 
 LINK = "<link name='{0}'><collision><origin xyz='0.5 0 0'/><geometry><box size='0.9 0.2 0.2'/></geometry></collision></link>"
@@ -209,3 +273,17 @@ def test_pickles(content, size, single):
     for cls in (snug.Collision, snug.Distance, snug.ClosestPoint):
         for count in (size, len(snug.collide(SOLID, SOLID, pose_b=[moved(3)]).__getstate__()[3])):
             attempt(lambda: cls.__new__(cls).__setstate__((snug.__version__, count, single, content)))
+
+
+def test_every_public_function_is_tried():
+    text = pathlib.Path(__file__).read_text()
+    owners = [snug, snug.collision, snug.proximity, *(getattr(snug, name) for name in snug.__all__), snug.proximity.ProximityQuery]
+    functions = {
+        name
+        for owner in owners
+        if owner in (snug, snug.collision, snug.proximity) or (isinstance(owner, type) and not issubclass(owner, (Exception, Warning)))
+        for name in getattr(owner, "__all__", dir(owner))
+        if not name.startswith("_") and callable(getattr(owner, name)) and not isinstance(getattr(owner, name), type)
+    }
+    assert len(functions) > 50
+    assert [name for name in sorted(functions) if f".{name}(" not in text and f".{name}," not in text and f".{name})" not in text] == []

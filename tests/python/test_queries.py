@@ -221,6 +221,7 @@ def test_inspection():
     broken = snug.inspect(CUBE, [*CUBE_FACES, CUBE_FACES[0]], scheme="loop")
     assert {each["kind"] for each in broken["defects"]} >= {"duplicate-face"} and not all(each["legal"] for each in broken["defects"])
     assert not snug.inspect(CUBE, CUBE_FACES[1:])["closed"]
+    assert [each["kind"] for each in snug.inspect(CUBE, np.zeros((2, 0)))["defects"][:2]] == ["too-few-vertices"] * 2
     surface = snug.Surface(CUBE, CUBE_FACES)
     assert surface.topology_of(0) == surface.topology_of(0, 0)
     with pytest.raises(ValueError):

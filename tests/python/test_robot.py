@@ -35,6 +35,18 @@ def test_first_contacts_are_proved_between_the_positions(arm):
     assert len(arm.first_contacts(fold[:1], joined=True)) == 3
 
 
+def test_a_margin_is_kept_along_the_whole_path(arm):
+    fold = [{}, {"shoulder": 1.2, "elbow": 1.2}, {"shoulder": 2.4, "elbow": 2.4}]
+    ((_, _, touch),) = arm.first_contacts(fold, tolerance=1e-4)
+    ((_, _, near),) = arm.first_contacts(fold, tolerance=1e-4, margin=0.05)
+    ((_, _, percent),) = arm.first_contacts(fold, tolerance=1e-4, margin="10%")
+    assert near.verdict == "within" and near.upper < touch.lower
+    assert percent.upper < near.upper, "of a link of length 0.9"
+    assert arm.first_contacts(fold[:2], margin=0.05)[0][2].verdict == "separated"
+    with pytest.raises(ValueError, match="margin"):
+        arm.first_contacts(fold, margin=-1)
+
+
 def test_groups_restrict_what_is_asked(arm, tmp_path):
     (tmp_path / "arm.srdf").write_text("<robot><group name='wrist'><link name='lower'/></group></robot>")
     grouped = snug.urdf(tmp_path / "arm.urdf", srdf=tmp_path / "arm.srdf")

@@ -294,6 +294,8 @@ def test_shapes(cube):
     deviation = snug.deviation(cube, mesh)
     assert deviation.from_surface.lower <= mesh.error_bound and deviation.inside is None
     assert snug.deviation(cube, cube).from_candidate.lower == 0
+    assert deviation.verdict is None and snug.deviation(cube, mesh, threshold="50%").verdict == "within"
+    assert snug.deviation(cube, mesh, threshold=0).verdict == "exceeds"
     around = cube.envelope("2%", clearance="1%")
     assert around.outcome == "complete" and around.problems == [] and around.clearance * 2 == around.error
     assert np.all(cube.closest_point(around.vertices).upper >= around.clearance)
@@ -327,6 +329,7 @@ def test_view(cube, tmp_path):
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     for pose in ((turn, [9, 0, 0]), ([np.sqrt(0.5), 0, 0, np.sqrt(0.5)], [9, 0, 0]), np.hstack([turn, [[9], [0], [0]]])):
         assert '"place": [' in snug.view(cube, poses=[pose], template=template).html
+    assert snug.view(cube, cube, poses=np.stack([moved(1), moved(9)]), template=template).html.count('"place": [') == 2
     for wrong in (np.eye(3), "abc", np.eye(4)[None]):
         with pytest.raises((ValueError, TypeError), match=r"poses\[0\]"):
             snug.view(cube, poses=[wrong], template=template)

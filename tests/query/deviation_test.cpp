@@ -226,6 +226,7 @@ TEST(deviation, answers_a_tolerance_and_no_more) {
       EXPECT_EQ(d.lower > tolerance, tolerance < 0.25);
       EXPECT_EQ(d.upper <= tolerance, tolerance >= 0.25);
     }
+    EXPECT_EQ(found.verdict, tolerance < 0.25 ? DeviationVerdict::exceeds : DeviationVerdict::within);
   }
   // Where nothing is between: the interval, as narrow as it was asked for.
   DeviationOptions options;
@@ -234,6 +235,16 @@ TEST(deviation, answers_a_tolerance_and_no_more) {
   const Deviation found = deviation(unit, moved, options);
   EXPECT_EQ(found.outcome, Outcome::complete);
   EXPECT_TRUE(found.from_surface.distance.contains(0.25));
+  EXPECT_EQ(found.verdict, DeviationVerdict::undecided);
+  EXPECT_STREQ(name_of(*found.verdict), "undecided");
+  // Farther one way than the other: the half of a plate is on it.
+  const Surface plate = surface_of(cube(1), Scheme::bilinear);
+  const std::vector<Triangle> half{triangles(cube(1))[0]};
+  options.threshold = 1e-3;
+  const Deviation part = deviation(plate, half, options);
+  EXPECT_LE(part.from_candidate.distance.upper, 1e-3);
+  EXPECT_EQ(part.verdict, DeviationVerdict::exceeds);
+  EXPECT_EQ(deviation(plate, half, {.absolute = 1e-3}).verdict, std::nullopt);
 }
 
 TEST(deviation, is_true_with_any_budget) {

@@ -78,6 +78,14 @@ TEST(mesh_counts, pass_over_faces_with_vertices_that_are_not_there) {
   mesh.add_face(good);
   mesh.add_face(bad);
   EXPECT_EQ(count_elements(mesh, Scheme::loop).edges, 3u);
+  // Nor do such without any.
+  mesh.add_face({});
+  EXPECT_EQ(count_elements(mesh, Scheme::loop).edges, 3u);
+  ControlMesh none;
+  for (int k = 0; k < 2; ++k) none.add_face({});
+  EXPECT_EQ(count_elements(none, Scheme::loop).needles, 0u);
+  EXPECT_EQ(defects(none)[0].kind, DefectKind::too_few_vertices);
+  EXPECT_EQ(coincidences(none).vertices, 0u);
 }
 
 TEST(mesh_counts, know_edges_of_many_faces_creases_and_what_is_extraordinary_for_the_scheme) {

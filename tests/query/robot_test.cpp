@@ -219,11 +219,13 @@ TEST(robot, first_contacts_of_all_pairs_are_those_of_each) {
   std::vector<Surface> surfaces;
   for (const ControlMesh& mesh : robot.meshes) surfaces.emplace_back(mesh);
   const std::vector<std::vector<double>> path{{0, 0}, {2.3, 2.3}, {2.8, 1.9}};
-  for (const int threads : {1, 3}) {
+  for (const auto& [threads, share] : {std::pair{1, 0.0}, {3, 0.05}}) {
+    const LinkContactsOptions options{.margin = [share = share](double size) { return share * size; },
+                                      .joined = true};
     std::atomic<int> reports{0};
     const WorkMonitor monitor{.on_progress = [&](double done) { reports += done > 0 && done <= 1; }};
     const std::vector<LinkContact> found =
-        first_contacts(robot, surfaces, path, {.joined = true}, {.threads = threads, .monitor = &monitor});
+        first_contacts(robot, surfaces, path, options, {.threads = threads, .monitor = &monitor});
     ASSERT_EQ(found.size(), 5u);
     EXPECT_EQ(reports, 5);
     EXPECT_EQ(found[1].a + ' ' + found[1].b + ' ' + found[1].frame, "base hand#1 base");
@@ -233,9 +235,11 @@ TEST(robot, first_contacts_of_all_pairs_are_those_of_each) {
     // The ball is inside of its mesh, whose contact is nearness.
     for (const auto& [answer, own] : {std::pair{found[1], ball}, {found[2], block}}) {
       const auto [a, b] = link_motions(robot, {0, base.pose}, {2, own.pose}, path);
-      const TimeOfContact alone = time_of_contact(surfaces[base.mesh], a, surfaces[own.mesh], b);
-      EXPECT_EQ(alone.verdict, Verdict::intersecting);
-      EXPECT_EQ(answer.answer.verdict, own.mesh == ball.mesh ? Verdict::within : Verdict::intersecting);
+      const double size = std::max(surfaces[base.mesh].size(), surfaces[own.mesh].size());
+      const TimeOfContact alone =
+          time_of_contact(surfaces[base.mesh], a, surfaces[own.mesh], b, {.margin = share * size});
+      EXPECT_EQ(alone.verdict, share == 0 ? Verdict::intersecting : Verdict::within);
+      EXPECT_EQ(answer.answer.verdict, own.mesh == ball.mesh ? Verdict::within : alone.verdict);
       EXPECT_EQ(answer.answer.time, alone.time);
       EXPECT_EQ(answer.placed[1].pose(), b.at(alone.time.upper));
     }

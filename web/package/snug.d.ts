@@ -208,6 +208,7 @@ export interface EnclosureShapes {
   edges: Float32Array;
 }
 export type SelfVerdict = "clear" | "intersecting" | "near" | "undecided";
+export type DeviationVerdict = "within" | "exceeds" | "undecided";
 export type HullFault =
   | "no-position" | "meets-surface" | "meets-itself" | "meets-other" | "not-around" | "too-few-triangles" | "through-itself";
 /** Which triangle of a face (in a dual scheme, of a vertex). */
@@ -466,6 +467,7 @@ export interface Deviation {
   /** Of points of the candidate from the surface. */ fromCandidate: OneSidedDistance;
   /** With solid: how far the candidate lies inside. */ inside: OneSidedDistance | null;
   /** With solid: how far the candidate lies outside. */ outside: OneSidedDistance | null;
+  /** With a threshold: 'within', both distances are at most that; 'exceeds', one is greater; or 'undecided'. */ verdict: DeviationVerdict | null;
   /** 'complete': each interval is as narrow as requested or, with a threshold, each question answered. */ outcome: Outcome;
 }
 // End of these answers.
@@ -485,12 +487,14 @@ export interface Surface {
     maxEdge?: number;
     maxAngle?: number;
     maxTriangles?: number;
+    maxThickness?: number;
+    view?: { eye: readonly number[]; angle: number };
   } & CallOptions): Tessellation;
   enclosures(options?: BoundOptions): Enclosures;
   enclosureShapes(options?: BoundOptions): EnclosureShapes;
   hull(options?: { error?: number; inner?: boolean; outer?: boolean } & CallOptions): Hulls;
-  /** A closed mesh around the surface, whatever it is; error: 1 % of the size, clearance: a quarter of that. */
-  envelope(options?: { error?: number; clearance?: number } & CallOptions): Envelope;
+  /** A closed mesh around the surface, whatever it is; error: 1 % of the size, clearance: a quarter of that; gap: openings as wide are filled. */
+  envelope(options?: { error?: number; clearance?: number; gap?: number } & CallOptions): Envelope;
   evaluate(at: Place): SurfacePoint;
   /** signed: negative inside a closed surface. */
   closestPoint(
@@ -506,7 +510,7 @@ export interface Surface {
     options?: { query?: "nearest" | "any" | "all"; from?: number; to?: number; absolute?: number } & CallOptions,
   ): RayHits;
   /** within: are points so near to each other farther apart than `radius` along the surface? */
-  selfContact(options?: { within?: number; radius?: number } & CallOptions): SelfContact;
+  selfContact(options?: { within?: number; radius?: number; levels?: number } & CallOptions): SelfContact;
   /** How far the limit surface may be from the faces of its control mesh; null with a dual scheme. */
   limitToFaces(): number | null;
   measure(options?: { relative?: number } & CallOptions): Measures;
@@ -533,9 +537,9 @@ export interface Robot {
   /**
    * Which links meet along a path of the joints, at constant speeds from each list of positions to the next? One answer for each two
    * shapes that can move against each other; joined: also of links that a joint joins; group: only with a
-   * link of this group. tolerance: 0.1 % of the larger mesh.
+   * link of this group. tolerance: 0.1 % of the larger mesh; margin: contact is being at most so far apart.
    */
-  firstContacts(path: readonly Positions[], options?: { tolerance?: number; joined?: boolean; group?: string } & CallOptions): LinkContact[];
+  firstContacts(path: readonly Positions[], options?: { tolerance?: number; margin?: number; joined?: boolean; group?: string } & CallOptions): LinkContact[];
   delete(): void;
 }
 
@@ -575,10 +579,10 @@ export interface SnugModule {
   timeOfContact(a: Surface, b: Surface, options?: { tolerance?: number; margin?: number; proveContact?: boolean } & MotionOptions): TimeOfContact;
   /** How far apart do moving surfaces stay? */
   clearance(a: Surface, b: Surface, options?: { absolute?: number; relative?: number } & MotionOptions): Clearance;
-  /** How far triangles deviate from a surface, and it from them. */
+  /** How far another surface or triangles deviate from a surface, and it from them. */
   deviation(
     surface: Surface,
-    triangles: { positions: Numbers; triangles: Numbers },
+    candidate: Surface | { positions: Numbers; triangles: Numbers },
     options?: { absolute?: number; threshold?: number; solid?: boolean } & CallOptions,
   ): Deviation;
   /** after: a pose to begin with; then rotated about an axis (z) through the origin, then moved. */

@@ -171,7 +171,8 @@ export default async function Snug({ wasm, simd } = {}) {
     penetration: both("penetration"),
     timeOfContact: both("timeOfContact"),
     clearance: both("clearance"),
-    deviation: (surface, triangles, options = {}) => checked(module.deviation(Surface.part(surface), triangles, options)),
+    deviation: (surface, candidate, options = {}) =>
+      checked(module.deviation(Surface.part(surface), candidate instanceof Surface ? Surface.part(candidate) : candidate, options)),
     pose: (steps) => checked(module.pose(steps)),
     textAtMost: (x) => module.textAtMost(x, false),
     textAtLeast: (x) => module.textAtMost(x, true),

@@ -255,7 +255,16 @@ test("makes envelopes, deviations and points that fit each other", () => {
   const triangles = pin.tessellate({ error: 0.01 * pin.size });
   const apart = snug.deviation(pin, triangles, { absolute: 1e-3 * pin.size });
   assert.ok(apart.outcome === "complete" && apart.fromSurface.distance[1] <= triangles.errorBound * 1.001 + 1e-3 * pin.size);
+  assert.deepStrictEqual([apart.verdict, snug.deviation(pin, triangles, { threshold: 0 }).verdict], [null, "exceeds"]);
   assert.throws(() => snug.deviation(pin, { positions: [0, 0, 0], triangles: [0, 1, 2] }), { problem: "value" });
+  assert.throws(() => snug.deviation(pin), { problem: "value", message: /give a Surface, or positions and triangles/ });
+  for (const ask of [() => pin.closestPoint(), () => pin.contains(), () => pin.ray([0, 0, 0])]) assert.throws(ask, { problem: "value", message: /: give three numbers$/ });
+  const other = snug.deviation(pin, model("pin.obj"), { threshold: 1e-3 * pin.size });
+  assert.ok(other.verdict === "within" && other.fromSurface.distance[0] === 0);
+  assert.ok(pin.envelope({ error: 0.05 * pin.size, gap: 0.2 * pin.size }).outcome === "complete");
+  const far = pin.tessellate({ view: { eye: [0, 0, 50 * pin.size], angle: 0.05 } }), near = pin.tessellate({ view: { eye: [0, 0, 5 * pin.size], angle: 0.05 } });
+  assert.ok(far.triangles.length < near.triangles.length && pin.tessellate({ maxThickness: 0.05 * pin.size }).triangles.length > 30);
+  assert.throws(() => pin.selfContact({ levels: -1 }), { problem: "value" });
   assert.throws(() => snug.timeOfContact(pin, pin, { motionB: [] }), { problem: "value", message: "motionB: give a list of poses" });
   const there = pin.evaluate({ owner: 3, corner: 0, u: 0.25, v: 0.5 });
   assert.ok(pin.closestPoint(there.point, { absolute: 1e-9 }).distance[0] <= 1e-9 && there.normal.length === 3);
@@ -352,6 +361,8 @@ test("moves robots as the native library does", () => {
   own.forEach((each, i) => assert.ok(compare(each, native[i], `pair ${i}`) >= 10));
   assert.ok(own.some(({ verdict, time }) => verdict === "intersecting" && time[0] > 1));
   assert.equal(arm.firstContacts(path).length, 1);
+  const near = ask("scene", join(scratch, "arm.urdf"), "--package", scratch, "--path", join(scratch, "moves.txt"), "--margin", "0.05").results;
+  assert.ok(compare(arm.firstContacts(path, { tolerance: 1e-3 * 0.9, margin: 0.05 })[0], near[0], "margin") >= 10 && near[0].verdict === "within");
   const [r0, , , x] = arm.poses({ shoulder: Math.PI / 2 }).lower;
   assert.ok(Math.abs(r0) < 1e-12 && Math.abs(x - 1) < 1e-12);
   const { throws } = assert;

@@ -18,6 +18,7 @@
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
+#include <support/names.h>
 #include <support/run.h>
 #include <support/scaling.h>
 
@@ -218,6 +219,13 @@ bool is_reached(const Interval& distance, const DeviationOptions& options, doubl
   return distance.upper - distance.lower <= precision;
 }
 
+DeviationVerdict verdict_of(const Deviation& found, double threshold) {
+  const Interval &there = found.from_surface.distance, &back = found.from_candidate.distance;
+  if (there.lower > threshold || back.lower > threshold) return DeviationVerdict::exceeds;
+  return there.upper <= threshold && back.upper <= threshold ? DeviationVerdict::within
+                                                             : DeviationVerdict::undecided;
+}
+
 OneSidedDistance larger_of(const OneSidedDistance& a, const OneSidedDistance& b) {
   OneSidedDistance result = a.distance.lower >= b.distance.lower ? a : b;
   result.distance.upper = std::max(a.distance.upper, b.distance.upper);
@@ -279,6 +287,7 @@ Deviation compare(const SurfaceBvh& model, ComparedSet surface, ComparedSet cand
     result.outside = directions[2].answer(back);
     result.from_candidate = larger_of(*result.inside, *result.outside);
   }
+  if (options.threshold) result.verdict = verdict_of(result, *options.threshold);
   const double precision = unscaled_up(asked.precision, back);
   bool reached = is_reached(result.from_surface.distance, options, precision) &&
                  is_reached(result.from_candidate.distance, options, precision);
@@ -311,7 +320,14 @@ void require_closed_if_solid(const SurfaceBvh& model, const DeviationOptions& op
   if (options.solid) static_cast<void>(model.solid());
 }
 
+constexpr auto verdict_names =
+    std::to_array<Named<DeviationVerdict>>({{"within", DeviationVerdict::within},
+                                            {"exceeds", DeviationVerdict::exceeds},
+                                            {"undecided", DeviationVerdict::undecided}});
+
 }  // namespace
+
+const char* name_of(DeviationVerdict verdict) { return name_in(verdict_names, verdict); }
 
 Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
                     const DeviationOptions& options, const Run& run) {

@@ -30,12 +30,12 @@ bool has_vertices_of(const ControlMesh& mesh, std::span<const VertexId> face) {
   return std::all_of(face.begin(), face.end(), [&](VertexId v) { return v.index() < mesh.vertex_count(); });
 }
 
-// The mesh without faces that name vertices it does not have, and without anything else but faces.
+// The mesh without faces that have no vertices or name such as it does not have, and without anything else but faces.
 ControlMesh sound_faces(const ControlMesh& mesh) {
   ControlMesh sound;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.face(FaceId(f));
-    if (has_vertices_of(mesh, face)) sound.add_face(face);
+    if (!face.empty() && has_vertices_of(mesh, face)) sound.add_face(face);
   }
   return sound;
 }

@@ -185,7 +185,9 @@ LinkContact first_contact(const Robot& robot, const ShapePair& pair, std::span<c
       link_motions(robot, {pair.links.a, shape_a.pose}, {pair.links.b, shape_b.pose}, positions);
   const Surface &a = surfaces[shape_a.mesh], &b = surfaces[shape_b.mesh];
   TimeOfContactOptions how;
-  if (options.tolerance) how.tolerance = options.tolerance(std::max(a.size(), b.size()));
+  const double size = std::max(a.size(), b.size());
+  if (options.tolerance) how.tolerance = options.tolerance(size);
+  if (options.margin) how.margin = options.margin(size);
   TimeOfContact answer = time_of_contact(a, motion_a, b, motion_b, how, run);
   // A mesh that goes beyond its shape meets others before the shape does.
   const bool goes_beyond = robot.outward[shape_a.mesh] > 0 || robot.outward[shape_b.mesh] > 0;
