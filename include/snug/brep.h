@@ -82,7 +82,7 @@ struct BrepOptions {
 /// Guarantee: error_bound and gap_bound are proved for the doubles returned, whatever the outcome. Faces share their edges: an
 ///            edge belongs to two faces, on a border to one.
 /// Not proved: break_angle, and which closed shells are voids (at most 2,000 shells are compared).
-/// Budget:    10,000,000 spans; a kilobyte each. Of Loop 20,000 over two triangles.
+/// Budget:    10,000,000 spans; a kilobyte each. Of Loop 40,000 over two triangles.
 /// Errors:    InputError: (value) for an error that is not finite and positive or too small for doubles, for an angle out of
 ///            range, and for a budget below one span a face; (refused) for Midedge, for an edge with more than two faces or with two that run along it in the same direction, and for a face that is its own neighbour;
 ///            (unrepresentable). Interrupted.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/spline_twin.h>
+#include <oracle/tagged_shapes.h>
 #include <testing/counts.h>
 #include <testing/tagged.h>
 
@@ -351,6 +352,71 @@ TEST(hermite_face, distances_over_boxes_are_bounded) {
   EXPECT_GT(across, boxes / 4);
   EXPECT_GT(beside, boxes / 50);  // a triangle and two rectangles
   EXPECT_LT(ratio, 2 * static_cast<double>(boxes));
+}
+
+// About a corner of high valence: a plane in the inner ball, the limit surface beyond the outer one, smooth between them, and the same
+// from both sides of an edge.
+TEST(hermite_face, flattened_surfaces_are_smooth_and_the_same_from_both_sides) {
+  constexpr std::uint32_t n = 13;
+  constexpr double radius = 0.2, size = 0x1p-14;
+  oracle::TaggedMesh mesh = oracle::meshes::triangulated(oracle::meshes::pyramid(n));
+  for (std::size_t k = 0; k < mesh.points.size(); ++k)
+    mesh.points[k][2] += 0.2 * std::cos(2.0 * static_cast<double>(k));
+  const LimitSurface surface(testing::control_mesh(mesh), {.scheme = Scheme::loop},
+                             std::make_shared<BoundsCache>());
+  std::size_t flat = 0, between = 0, beyond = 0;
+  const Topology& topology = surface.topology();
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    const auto names = surface.corner_names(PatchId(p));
+    for (unsigned k = 0; k < 3; ++k) {
+      if (topology.face_valence(VertexId(names[k])) != n) continue;
+      TriangleTree plain(surface.patch(PatchId(p)), k, SquareHalf::lower), tree = plain;
+      tree.flatten(0, radius);
+      const Vector3 center = plain.limit(0, 0), normal = *plain.normal(0);
+      const HalfEdge twin = topology.twin(topology.first_of(FaceId(static_cast<std::uint32_t>(p))) + k);
+      const PatchId other(topology.face_of(twin).index());
+      TriangleTree across(surface.patch(other), twin % 3 + 1, SquareHalf::upper);
+      across.flatten(0, radius);
+      for (int i = 1; i <= 64; ++i) {
+        const double u = std::pow(i / 65.0, 2), v = u * ((7 * i) % 64) / 64.0;
+        const double away = length(plain.limit(u, v) - center),
+                     height = dot(normal, tree.limit(u, v) - center);
+        if (away < 0.149 * radius) {
+          ++flat;
+          EXPECT_LE(std::fabs(height), 1e-15);
+        }
+        if (away > radius) {
+          ++beyond;
+          EXPECT_EQ(length(tree.limit(u, v) - plain.limit(u, v)), 0);
+        }
+        if (away > 0.15 * radius && away < radius) ++between;
+        const CornerJet jet = *tree.jet(u, 0);
+        const double h = size * u;
+        const CornerJet left = *tree.jet(u - h, 0), right = *tree.jet(u + h, 0);
+        EXPECT_LE(length((1 / (2 * h)) * (right.point - left.point) - jet.along_u),
+                  1e-4 * length(jet.along_u));
+        EXPECT_LE(length((1 / (2 * h)) * (right.along_v - left.along_v) - jet.twist),
+                  1e-4 * (length(jet.twist) + length(jet.along_v) / u));
+        const CornerJet inside = *tree.jet(u, 0.5 * u), above = *tree.jet(u, 0.5 * u + h),
+                        below = *tree.jet(u, 0.5 * u - h);
+        EXPECT_LE(length((1 / (2 * h)) * (above.point - below.point) - inside.along_v),
+                  1e-4 * length(inside.along_v));
+        EXPECT_LE(length((1 / (2 * h)) * (above.along_u - below.along_u) - inside.twist),
+                  1e-4 * (length(inside.twist) + length(inside.along_u) / u));
+        // The other triangle has the edge on its diagonal's opposite side: from its corner 0 along u = 0.
+        const CornerJet there = *across.jet(0, u);
+        const Vector3 shift = across.origin() - tree.origin();
+        EXPECT_LE(length(there.point + shift - jet.point), 1e-14);
+        EXPECT_LE(length(there.along_v - jet.along_u), 1e-11 * length(jet.along_u));
+        // Both derivatives across: the same plane.
+        EXPECT_LE(std::fabs(dot(cross(jet.along_u, jet.along_v), there.along_u)),
+                  1e-9 * length(jet.along_u) * length(jet.along_v) * length(there.along_u));
+      }
+    }
+  }
+  EXPECT_GE(flat, n);
+  EXPECT_GE(between, 5 * n);
+  EXPECT_GE(beyond, 5 * n);
 }
 
 }  // namespace

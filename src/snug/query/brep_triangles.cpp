@@ -14,11 +14,15 @@ namespace snug {
 namespace {
 
 constexpr double share_of_curves = 0.4;     // of the error, for curves of edges
-constexpr std::size_t most_spans = 20'000;  // of a square of a face
-constexpr double budget_factor = 4;         // by which the error grows if spans do not suffice
+constexpr std::size_t most_spans = 40'000;  // of a square of a face
+constexpr double share_of_flats = 0.5;      // likewise, for flattening about extraordinary vertices
+constexpr std::uint32_t least_flat_valence = 11;
+constexpr unsigned most_flat_level = 40;
+constexpr double budget_factor = 4;  // by which the error grows if spans do not suffice
 constexpr double same_jet = 0x1p-42;
+constexpr double same_plane = 1e-9;  // sine of the angle between normals
 constexpr double least_span =
-    0x1p-20;  // of an edge, between knots that are made where faces meet at an angle
+    0x1p-28;  // of an edge, between knots that are made where faces meet at an angle
 
 // Faces of triangles of Loop's scheme.
 class TriangleBrepMaker : public BrepMaker {
@@ -58,6 +62,7 @@ class TriangleBrepMaker : public BrepMaker {
         if (owner.quad == UINT32_MAX) owner = {q, k};
       }
     }
+    if (max_angle_) find_flats();
     parallel_for(owners.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t e = begin; e < end; ++e) {
         monitor_.checkpoint();
@@ -71,7 +76,61 @@ class TriangleBrepMaker : public BrepMaker {
   }
   [[nodiscard]] TriangleTree tree_along(const QuadSide& s) const {
     const PatchEdge edge = edge_of(s);
-    return {surface_.patch(edge.patch), edge.side, SquareHalf::lower};
+    return tree_of(edge.patch, edge.side, SquareHalf::lower);
+  }
+  [[nodiscard]] TriangleTree tree_of(PatchId patch, unsigned turn, SquareHalf half) const {
+    TriangleTree tree(surface_.patch(patch), turn, half);
+    if (flats_.empty()) return tree;
+    const auto names = surface_.corner_names(patch);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double radius = flats_[names[(k + turn) % 3]];
+      if (radius > 0 && std::isfinite(radius)) tree.flatten(k, radius);
+    }
+    return tree;
+  }
+
+  // Vertices about which faces become flat, and how far: as far as the surface is near enough to its tangent plane. Where valences are high
+  // normals change by a factor close to 1 with each halving, and bicubics cannot follow them.
+  void find_flats() {
+    std::vector<PatchId> patches;
+    std::vector<std::uint32_t> valences(surface_.corner_name_count());
+    for (const SurfaceQuad& quad : layout_.quads()) {
+      for (const auto& patch : {std::optional(quad.pair->lower), quad.pair->upper}) {
+        if (!patch || surface_.kind(*patch).polynomial()) continue;
+        patches.push_back(*patch);
+        for (const std::uint32_t name : surface_.corner_names(*patch)) ++valences[name];
+      }
+    }
+    flats_.assign(valences.size(), INFINITY);
+    std::vector<std::optional<Vector3>> normals(valences.size());
+    for (const PatchId patch : patches) {
+      const auto names = surface_.corner_names(patch);
+      for (unsigned k = 0; k < 3; ++k) {
+        if (valences[names[k]] < least_flat_valence) continue;
+        TriangleTree tree(surface_.patch(patch), k, SquareHalf::lower);
+        const auto here = tree.normal(0);
+        std::optional<Vector3>& normal = normals[names[k]];
+        if (!normal) normal = here;
+        const bool plane = here && length(cross(*here, *normal)) <= same_plane;
+        double& radius = flats_[names[k]];
+        radius = plane ? std::min(radius, flat_radius(tree, *here)) : 0;
+      }
+    }
+  }
+  // Around corner 0.
+  [[nodiscard]] double flat_radius(TriangleTree& tree, const Vector3& normal) const {
+    const Vector3 center = tree.limit(0, 0);
+    double t = 0.25;
+    for (unsigned level = 2; level <= most_flat_level; ++level, t *= 0.5) {
+      double least = INFINITY, highest = 0;
+      for (int k = 0; k <= 8; ++k) {
+        const Vector3 d = tree.limit(t, 0.125 * k * t) - center;
+        least = std::min(least, length(d));
+        highest = std::max(highest, std::fabs(dot(normal, d)));
+      }
+      if (highest <= share_of_flats * reached_) return least;
+    }
+    return t;
   }
   [[nodiscard]] const PatchSide& side_of_mesh(const QuadSide& s) const {
     return layout_.quads()[s.quad].sides[s.side];
@@ -89,13 +148,13 @@ class TriangleBrepMaker : public BrepMaker {
   // k + 1.
   [[nodiscard]] FaceSquare square_of(const PlacedQuad& placed) const {
     const PairedTriangles& pair = *layout_.quads()[placed.quad].pair;
-    if (!pair.upper) return {{surface_.patch(pair.lower), pair.turn, SquareHalf::lower}, {}};
+    if (!pair.upper) return {tree_of(pair.lower, pair.turn, SquareHalf::lower), {}};
     if (placed.turn == 0) {
-      return {{surface_.patch(pair.lower), pair.turn, SquareHalf::lower},
-              TriangleTree(surface_.patch(*pair.upper), pair.upper_turn, SquareHalf::upper)};
+      return {tree_of(pair.lower, pair.turn, SquareHalf::lower),
+              tree_of(*pair.upper, pair.upper_turn, SquareHalf::upper)};
     }
-    return {{surface_.patch(*pair.upper), pair.upper_turn + 1u, SquareHalf::lower},
-            TriangleTree(surface_.patch(pair.lower), pair.turn + 2u, SquareHalf::upper)};
+    return {tree_of(*pair.upper, pair.upper_turn + 1u, SquareHalf::lower),
+            tree_of(pair.lower, pair.turn + 2u, SquareHalf::upper)};
   }
 
   // Are all four triangles polynomials, with the same derivatives at both ends of the side?
@@ -166,10 +225,9 @@ class TriangleBrepMaker : public BrepMaker {
         count += end - begin;
         monitor_.report(0.2 + 0.5 * static_cast<double>(count) / static_cast<double>(drafts_.size()));
       });
-      spent_ = spent_ || far;
+      spent_ = spent_ || far || spans > budget_;
+      if (again && spent_) return false;
       if (spans <= budget_) return true;
-      spent_ = true;
-      if (again) return false;
       reached_ *= budget_factor;
       fit_curves();
     }
@@ -223,6 +281,7 @@ class TriangleBrepMaker : public BrepMaker {
   }
 
   double reached_;
+  std::vector<double> flats_;         // radii about corners, by name; 0 or infinite where faces are not flat
   std::vector<HermiteCurve> curves_;  // of edges, in their own direction
   std::vector<QuadSide> owners_;      // likewise, by which they were made
   std::vector<std::vector<FacePart>> faces_;

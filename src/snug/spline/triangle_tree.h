@@ -32,6 +32,16 @@ struct QuarticTriangle {
 [[nodiscard]] double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic,
                                     SquareHalf half, const ParameterBox& box);
 
+/// A ball around an extraordinary vertex in which faces may be flat: from the inner radius on the surface is bent into the tangent
+/// plane, in a way that depends on its points alone. So faces around the vertex are bent alike.
+struct FlatBall {
+  Vector3 center, normal;
+  double inner_sq, outer_sq;
+
+  /// Bends the point; derivatives likewise.
+  void apply(CornerJet& jet) const;
+};
+
 /// The limit surface of a triangle of Loop's scheme, laid on half of a unit square: polynomials, and nets that are split
 /// where questions need it. Points are relative to the patch's origin.
 /// Source:    derivations/brep.md.
@@ -41,6 +51,9 @@ class TriangleTree {
   TriangleTree(const Patch& patch, unsigned turn, SquareHalf half);
 
   [[nodiscard]] const Point3& origin() const { return patch_.origin; }
+  /// Flattens positions and derivatives, as the following have them, about a corner that has a tangent plane. distance() is from the
+  /// limit surface itself.
+  void flatten(std::size_t corner, double radius);
   /// Position, derivatives and mixed derivative at a point of the half; none at a corner that is extraordinary.
   [[nodiscard]] std::optional<CornerJet> jet(double u, double v);
   /// The limit point there.
@@ -67,12 +80,14 @@ class TriangleTree {
   [[nodiscard]] static Node node_of(ControlNet net, unsigned first, SquareHalf half);
   [[nodiscard]] std::uint32_t children_of(std::uint32_t node);
   [[nodiscard]] LimitFrame corner_frame(std::size_t corner);
+  [[nodiscard]] std::optional<CornerJet> limit_jet(double u, double v);
 
   Patch patch_;
   unsigned turn_;
   SquareHalf half_;
   std::optional<LimitEvaluator> evaluator_;  // of corners
   std::vector<Node> nodes_;
+  std::vector<FlatBall> flats_;
 };
 
 }  // namespace snug
