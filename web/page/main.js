@@ -712,6 +712,16 @@ function listenToDrops() {
 }
 
 // A scene: parts with their poses, all new.
+// Until somebody does: the finest that is quickly drawn, so that outlines of coarse cages look as smooth as they are.
+let level_is_chosen = false;
+function chooseLevel() {
+  if (level_is_chosen || state.parts.length > many_parts) return;
+  const drawn = state.parts.reduce((sum, { info }) => sum + (info ? info.shape.triangles.length / 3 : 0), 0);
+  if (drawn * 4 > 40_000) return;
+  $("level").value = 1 + Number($("level").value);
+  $("level-text").textContent = $("level").value;
+}
+
 async function open(parts, direction) {
   silence();
   view?.keep(0);
@@ -720,6 +730,7 @@ async function open(parts, direction) {
   state.pair = [0, Math.min(1, parts.length - 1)];
   state.answer = null;
   setMoves(parts.length > 1 ? 1 : 0);
+  if (!level_is_chosen && parts.length <= many_parts) $("level").value = 3;
   for (const [index, part] of state.parts.entries()) {
     try {
       await read(index, part);
@@ -727,6 +738,7 @@ async function open(parts, direction) {
       tell(error.message);
     }
   }
+  chooseLevel();
   cards();
   visibility();
   view?.fit(direction);
@@ -756,6 +768,7 @@ function listenToControls() {
     if ($("adaptive").checked || $("show-hulls").checked) showLayers();
   };
   $("level").oninput = () => {
+    level_is_chosen = true;
     level_told();
     showLayers();
   };

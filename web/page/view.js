@@ -256,7 +256,7 @@ export class View {
     camera.near = 0.1 * radius;
     camera.far = 6 * radius;
     camera.updateProjectionMatrix();
-    this.sun.shadow.normalBias = radius / 300;
+    this.sun.shadow.normalBias = radius / 60;  // or facets shade themselves
     this.ground.position.set(center.x, box.min.y - 0.02 * radius, center.z);
     this.ground.scale.setScalar(4 * radius);
   }
