@@ -394,7 +394,7 @@ export interface BoundSummary {
 }
 export interface Tessellation {
   /** Corners of triangles. */ positions: Float64Array;
-  /** Unit limit normals at `positions`, 0 0 0 where there is none. */ normals: Float64Array;
+  /** Unit limit normals at `positions`, at a crease of one side, 0 0 0 where there is none. */ normals: Float64Array;
   /** Rows of `positions`, oriented as the faces. */ triangles: Uint32Array;
   /** Of each triangle the face of the surface (of dual schemes the vertex). */ owners: Uint32Array;
   /** Proved: triangles and surface are nowhere farther apart, either way. */ errorBound: number;

@@ -44,8 +44,7 @@ export function arraysOf(geometry) {
 // A function with a vector of 128 bits: does this engine know them?
 const hasVectors = () => WebAssembly.validate(Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11));
 
-async function wasmBeside(url, name) {
-  const place = new URL(name, url);
+async function bytesAt(place) {
   if (place.protocol === "file:" && typeof process !== "undefined") {
     const { readFile } = await import("node:fs/promises");
     return readFile(place);
@@ -54,21 +53,21 @@ async function wasmBeside(url, name) {
   if (!answer.ok) throw new Error(`${place}: ${answer.status} ${answer.statusText}`);
   return answer.arrayBuffer();
 }
-// The module for vectors, where it is known and there.
-async function wasmFor(url, simd) {
+// The module for vectors, where it is known and there. Names stand in `new URL` themselves, where bundlers look for files to take along.
+async function wasmFor(simd) {
   if (simd ?? hasVectors()) {
     try {
-      return await wasmBeside(url, "./snug.simd.wasm");
+      return await bytesAt(new URL("./snug.simd.wasm", import.meta.url));
     } catch (error) {
       if (simd) throw error;
     }
   }
-  return wasmBeside(url, "./snug.wasm");
+  return bytesAt(new URL("./snug.wasm", import.meta.url));
 }
 
 /** Loads the module. */
 export default async function Snug({ wasm, simd } = {}) {
-  const module = await load({ wasmBinary: wasm ?? (await wasmFor(import.meta.url, simd)) });
+  const module = await load({ wasmBinary: wasm ?? (await wasmFor(simd)) });
 
   class Surface {
     #part;

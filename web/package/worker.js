@@ -17,8 +17,9 @@ export default function SnugWorker({ threads: count = 1, ...options } = {}) {
     waiting.clear();
   };
   async function start(own) {
-    const url = new URL("./thread.js", import.meta.url);
-    const made = isNode ? new (await import("node:worker_threads")).Worker(url) : new Worker(url, { type: "module" });
+    const { Worker: NodeWorker } = isNode ? await import("node:worker_threads") : {};
+    // In the form that bundlers know.
+    const made = isNode ? new NodeWorker(new URL("./thread.js", import.meta.url)) : new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
     const hear = (data) => {
       const asked = waiting.get(data.id);
       if (data.done !== undefined) return asked?.progress?.(data.done);

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { basename, dirname, join, resolve } from "node:path";
+import { basename, dirname, extname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -610,5 +610,28 @@ test("three draws a tessellation of arrays", { skip }, async () => {
   for (const at of [[2, 2], [297, 2], [2, 297], [297, 297]]) assert.deepEqual(lit(...at), [0, 0, 0]);
   assert.ok(volume[1][1] < volume[0][1] && volume[1][0] > 0.95 * volume[0][0], `${volume}`);
   await page.screenshot({ path: join(pictures, "three.png") });
+  await page.close();
+});
+
+// The page in docs/browser.md, from a server as its reader has one.
+test("the documentation's page of one's own draws and answers", { skip }, async () => {
+  const [, text] = readFileSync(join(root, "docs/browser.md"), "utf8").match(/```html\n([^]*?)```/);
+  const page = await browser.newPage();
+  const faults = [];
+  page.on("pageerror", (error) => faults.push(error.stack));
+  page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
+  const types = { ".js": "text/javascript", ".wasm": "application/wasm" };
+  await page.route("http://one.own/**", (route) => {
+    const { pathname } = new URL(route.request().url());
+    if (pathname === "/") return route.fulfill({ contentType: "text/html", body: text });
+    const file = pathname.startsWith("/node_modules/snug-surfaces/") ? join(package_folder, pathname.slice(28)) : join(root, "web", pathname);
+    return route.fulfill({ contentType: types[extname(file)], body: readFileSync(file) });
+  });
+  await page.goto("http://one.own/");
+  await page.waitForSelector("canvas", { timeout: 60_000 }).catch((error) => assert.deepEqual(faults, [], error.message));
+  const [, lower, upper] = (await page.textContent("#answer")).match(/^separated, (0\.\d+) to (0\.\d+) apart$/);
+  assert.ok(Number(lower) < Number(upper) && Number(upper) < 1.01 * Number(lower), `${lower} ${upper}`);
+  assert.deepEqual(faults, []);
+  await page.screenshot({ path: join(pictures, "own.png") });
   await page.close();
 });
