@@ -1,6 +1,6 @@
 #include "certificate_file.h"
 
-#include <filesystem>
+#include <support/system_files.h>
 
 namespace snug::command {
 
@@ -32,8 +32,7 @@ void CertificateFile::add_to(Report& report, std::vector<AtomicFile*>& files) {
   }
   if (none) {
     file_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(name_, ignored);  // a proof of an earlier answer
+    system_files::remove(name_.c_str());  // a proof of an earlier answer
     return;
   }
   file_->write(certificate_.text);

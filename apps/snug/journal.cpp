@@ -1,16 +1,12 @@
 #include "journal.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
 
 #include <fmt/core.h>
 #include <snug/run.h>
+#include <support/system_files.h>
 
 namespace snug::command {
 namespace {
@@ -24,23 +20,23 @@ std::string reason() { return std::generic_category().message(errno); }
 }  // namespace
 
 Journal::Journal(const std::string& path, std::uint64_t fingerprint) : path_(path) {
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+  descriptor_ = system_files::open_to_update(path);
   if (descriptor_ < 0) fail("cannot be opened: " + reason());
   try {
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) fail("cannot be read: " + reason());
-    if (!S_ISREG(status.st_mode)) fail("is not a file; a journal is read and written");
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (system_files::status_of(descriptor_).sort != system_files::Sort::file) {
+      fail("is not a file; a journal is read and written");
+    }
+    if (system_files::lock(descriptor_) != 0) {
       fail("is in use by another run; wait for its end, or name another journal");
     }
     read_entries(fmt::format("{}{:016x}\n", title, fingerprint));
   } catch (...) {
-    ::close(descriptor_);
+    system_files::close(descriptor_);
     throw;
   }
 }
 
-Journal::~Journal() { ::close(descriptor_); }
+Journal::~Journal() { system_files::close(descriptor_); }
 
 void Journal::fail(const std::string& reason) const {
   throw InputError(InputProblem::unreadable, path_ + ": " + reason);
@@ -69,7 +65,7 @@ void Journal::read_entries(const std::string& head) {
   while (!torn && !ended) {
     const std::size_t old = text.size();
     text.resize(old + block);
-    const ssize_t got = ::pread(descriptor_, text.data() + old, block, static_cast<off_t>(offset + old));
+    const std::ptrdiff_t got = system_files::read_at(descriptor_, text.data() + old, block, offset + old);
     if (got < 0) fail("cannot be read: " + reason());
     text.resize(old + static_cast<std::size_t>(got));
     ended = got == 0;
@@ -91,10 +87,7 @@ void Journal::read_entries(const std::string& head) {
   }
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& x, const Entry& y) { return x.key < y.key; });
-  if (::ftruncate(descriptor_, static_cast<off_t>(offset)) != 0 ||
-      ::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) {
-    fail("cannot be written: " + reason());
-  }
+  if (system_files::truncate(descriptor_, offset) != 0) fail("cannot be written: " + reason());
   end_ = offset;
   if (!headed) write(head);
 }
@@ -107,9 +100,9 @@ std::optional<SceneAnswer> Journal::find(const PartPair& parts) const {
   std::string line(at->size, '\0');
   PartPair read;
   SceneAnswer answer;
-  const ssize_t got = ::pread(descriptor_, line.data(), line.size(), static_cast<off_t>(at->offset));
+  const std::ptrdiff_t got = system_files::read_at(descriptor_, line.data(), line.size(), at->offset);
   const bool whole =
-      got == static_cast<ssize_t>(line.size()) && parse_line(line, read, answer) && read == parts;
+      got == std::ssize(line) && parse_line(line, read, answer) && read == parts;
   if (!whole) fail("was changed by somebody else; start again with a new journal");
   return answer;
 }
@@ -121,20 +114,21 @@ void Journal::add(const PartPair& parts, const SceneAnswer& answer) {
 }
 
 void Journal::write(std::string_view text) {
+  std::uint64_t end = end_;
   for (std::string_view left = text; !left.empty();) {
-    const ssize_t done = ::write(descriptor_, left.data(), left.size());
+    const std::ptrdiff_t done = system_files::write_at(descriptor_, left.data(), left.size(), end);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
       const std::string why = reason();
       // Half a line would cost those that other threads write after it.
-      const auto end = static_cast<off_t>(end_);
-      if (::ftruncate(descriptor_, end) == 0) static_cast<void>(::lseek(descriptor_, end, SEEK_SET));
+      static_cast<void>(system_files::truncate(descriptor_, end_));
       fail("cannot be written: " + why +
            "; what was finished stays in it: make room, and run again with the same --resume");
     }
     left.remove_prefix(static_cast<std::size_t>(done));
+    end += static_cast<std::uint64_t>(done);
   }
-  end_ += text.size();
+  end_ = end;
 }
 
 }  // namespace snug::command

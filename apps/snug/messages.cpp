@@ -1,8 +1,5 @@
 #include "messages.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -12,6 +9,7 @@
 #include <new>
 
 #include <support/atomic_file.h>
+#include <support/system_files.h>
 
 namespace snug::command {
 namespace {
@@ -96,7 +94,7 @@ std::string as_utf8(std::string_view text) {
 
 void to_standard_error(std::string_view text) noexcept {
   while (!text.empty()) {
-    const ssize_t count = ::write(STDERR_FILENO, text.data(), text.size());
+    const std::ptrdiff_t count = system_files::write(system_files::standard_error, text.data(), text.size());
     if (count >= 0) {
       text.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
@@ -122,14 +120,6 @@ void write_output(std::string_view text) {
   AtomicFile output("-");
   output.write(text);
   output.commit();
-}
-
-void hold_standard_descriptors() noexcept {
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(descriptor, F_GETFD) >= 0) continue;
-    // The lowest one that is free is the one that is meant. Opened the wrong way round: to use it fails.
-    static_cast<void>(::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
-  }
 }
 
 }  // namespace snug::command

@@ -29,8 +29,4 @@ void set_program_name(const char* name) noexcept;
 /// Errors:    InputError (unreadable) where it is closed or full.
 void write_output(std::string_view text);
 
-/// Descriptors 0 to 2 that are closed become ones that fail as closed ones do, so that no file is opened in
-/// their place and receives messages: to be called before any file is opened.
-void hold_standard_descriptors() noexcept;
-
 }  // namespace snug::command

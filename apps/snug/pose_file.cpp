@@ -1,10 +1,5 @@
 #include "pose_file.h"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -14,8 +9,10 @@
 #include <support/error.h>
 #include <support/number.h>
 #include <support/read_file.h>
+#include <support/system_files.h>
 
 #include "pose.h"
+#include "process.h"
 #include "words.h"
 
 namespace snug::command {
@@ -180,22 +177,19 @@ ReadPoses parse_pose_line(std::string_view text, bool nearest_rigid) {
 }
 
 PoseFile::PoseFile(const std::string& path, const WorkMonitor& monitor)
-    : name_(input_name(path)), descriptor_(STDIN_FILENO) {
+    : name_(input_name(path)), descriptor_(system_files::standard_input) {
   if (path != "-") {
     // A pipe waits here for who writes to it.
-    while ((descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) < 0 && errno == EINTR) {
+    while ((descriptor_ = system_files::open_to_read(path)) < 0 && errno == EINTR) {
       monitor.checkpoint();
     }
   }
-  struct stat status {};
-  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
-    fail(name_ + ": cannot be read: " + std::generic_category().message(errno));
-  }
-  if (S_ISREG(status.st_mode)) size_ = static_cast<std::uint64_t>(status.st_size);
+  if (descriptor_ < 0) fail(name_ + ": cannot be read: " + std::generic_category().message(errno));
+  size_ = system_files::status_of(descriptor_).size;
 }
 
 PoseFile::~PoseFile() {
-  if (descriptor_ != STDIN_FILENO) ::close(descriptor_);
+  if (descriptor_ != system_files::standard_input) system_files::close(descriptor_);
 }
 
 std::string PoseFile::name_of(std::size_t line) const { return name_ + ":" + std::to_string(line); }
@@ -206,16 +200,11 @@ double PoseFile::share() const {
                                         static_cast<double>(size_));
 }
 
-bool PoseFile::more_is_there() const {
-  pollfd watched{descriptor_, POLLIN, 0};
-  return ::poll(&watched, 1, 0) == 1 && (watched.revents & POLLIN) != 0;
-}
-
 // Reads what is there; false where a signal ended the wait.
 bool PoseFile::read(const WorkMonitor& monitor) {
   const std::size_t size = buffer_.size();
   buffer_.resize(2 * longest_line);
-  const ssize_t got = ::read(descriptor_, buffer_.data() + size, buffer_.size() - size);
+  const std::ptrdiff_t got = system_files::read(descriptor_, buffer_.data() + size, buffer_.size() - size);
   const int reason = errno;
   buffer_.resize(size + (got > 0 ? static_cast<std::size_t>(got) : 0));
   if (got < 0 && reason != EINTR) {
@@ -249,7 +238,7 @@ std::vector<PoseLine> PoseFile::next(const WorkMonitor& monitor) {
   while (lines.empty()) {
     while (!at_end_ && buffer_.size() < longest_line) {
       if (!read(monitor)) continue;
-      if (buffer_.find('\n') != std::string::npos && !more_is_there()) break;
+      if (buffer_.find('\n') != std::string::npos && !process::can_read_now(descriptor_)) break;
     }
     const auto last = buffer_.rfind('\n');
     if (at_end_) {

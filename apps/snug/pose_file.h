@@ -42,7 +42,6 @@ class PoseFile {
 
  private:
   bool read(const WorkMonitor& monitor);
-  [[nodiscard]] bool more_is_there() const;
   void take_lines(std::size_t size, std::vector<PoseLine>& lines);
 
   std::string name_;

@@ -1,6 +1,5 @@
 #include "program.h"
 
-#include <execinfo.h>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -18,6 +17,7 @@
 #include "common.h"
 #include "length.h"
 #include "messages.h"
+#include "process.h"
 #include "progress_bar.h"
 #include "version.h"
 
@@ -43,9 +43,7 @@ void release_a_part() {
 void prepare_for_lack_of_memory() {
   for (std::atomic<void*>& part : reserve) part = std::malloc(std::size_t{8} << 10);
   std::set_new_handler(release_a_part);
-  // The C library loads what it needs to unwind through itself (std::call_once) now, while it can.
-  void* frame = nullptr;
-  static_cast<void>(backtrace(&frame, 1));
+  process::load_what_unwinds();
 }
 
 int fail(ExitStatus status, std::string_view message) {
@@ -77,10 +75,10 @@ int interruption() {
 
 // Nothing that comes from outside ends the process without a message and a status.
 int run(int argc, char** argv, const std::function<Program()>& program) {
-  hold_standard_descriptors();
+  process::hold_standard_descriptors();
   prepare_for_lack_of_memory();
   try {
-    return answer(program(), {argv + std::min(argc, 1), argv + argc});
+    return answer(program(), process::arguments(argc, argv));
   } catch (const Interrupted&) {
     return interruption();
   } catch (const UsageError& error) {

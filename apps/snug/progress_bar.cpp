@@ -1,15 +1,12 @@
 #include "progress_bar.h"
 
-#include <sys/time.h>
-#include <unistd.h>
-#include <cerrno>
-#include <csignal>
-
 #include <fmt/core.h>
 #include <support/atomic_file.h>
+#include <support/system_files.h>
 
 #include "exit_status.h"
 #include "messages.h"
+#include "process.h"
 
 namespace snug::command {
 
@@ -18,45 +15,18 @@ std::atomic<bool> stop_requested{false};
 namespace {
 
 constexpr std::string_view clear_line = "\r\033[K";
-constexpr suseconds_t grace = 300'000;  // microseconds
 
 std::atomic<bool> drawn{false};  // is there a bar on the terminal?
 std::atomic<bool> reported{false};
 
-[[noreturn]] void end_at_once() {
+}  // namespace
+
+void end_interrupted() noexcept {
   remove_unfinished_files();
   if (drawn.exchange(false)) to_standard_error(clear_line);
   report_interrupted();
-  _exit(static_cast<int>(ExitStatus::interrupted));
+  process::end(static_cast<int>(ExitStatus::interrupted));
 }
-
-void note_interrupt(int signal) {
-  const int before = errno;
-  if (signal == SIGALRM || stop_requested.exchange(true)) end_at_once();
-  // A plain system call on Linux, and so safe here.
-  const itimerval until_the_end{{0, 0}, {0, grace}};
-  setitimer(ITIMER_REAL, &until_the_end, nullptr);
-  errno = before;
-}
-
-// Before the constructors of static objects and before main: as early as a program can.
-[[gnu::constructor(101)]] void install_handlers() {
-  struct sigaction action {};
-  action.sa_handler = note_interrupt;
-  sigfillset(&action.sa_mask);
-  action.sa_flags = 0;  // no SA_RESTART: a read that waits for input ends
-  for (const int signal : {SIGINT, SIGTERM, SIGALRM}) sigaction(signal, &action, nullptr);
-  // nohup means it.
-  struct sigaction hangup {};
-  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) {
-    sigaction(SIGHUP, &action, nullptr);
-  }
-  // A closed pipe and a file that may grow no more are errors of write().
-  action.sa_handler = SIG_IGN;
-  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &action, nullptr);
-}
-
-}  // namespace
 
 void report_interrupted() noexcept {
   if (reported.exchange(true)) return;
@@ -74,7 +44,7 @@ WorkMonitor stopped_by_interrupts() {
 
 ProgressBar::ProgressBar(std::string_view what, bool quiet)
     : what_(one_line(what)),
-      visible_(!quiet && isatty(STDERR_FILENO) != 0),
+      visible_(!quiet && process::is_terminal(system_files::standard_error)),
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 

@@ -38,6 +38,8 @@ class ProgressBar {
 /// Guarantee: work that does not end by itself within 0.3 s of the first signal is ended then, or at a second
 ///            signal: temporary files removed, standard output as far as it was written, status 130.
 extern std::atomic<bool> stop_requested;
+/// Ends the process as such: temporary files removed, status 130. Async-signal-safe.
+[[noreturn]] void end_interrupted() noexcept;
 /// A monitor that stops at an interrupt and shows nothing.
 [[nodiscard]] WorkMonitor stopped_by_interrupts();
 /// "snug: interrupted" on standard error, once a process. Async-signal-safe.

@@ -1,12 +1,11 @@
 #include "ranks.h"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
-#include <filesystem>
 
 #include <fmt/core.h>
 #include <snug/run.h>
+
+#include "process.h"
 
 namespace snug::command {
 namespace {
@@ -19,16 +18,12 @@ namespace {
 
 // Beside the program, or where it is installed.
 const SnugRanks* functions() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
   void* library = nullptr;
   for (const char* folder : {".", SNUG_MPI_FOLDER}) {
-    // Its names must be seen by what MPI loads by itself.
-    if (library == nullptr)
-      library = dlopen((program / folder / "snug_mpi.so").c_str(), RTLD_NOW | RTLD_GLOBAL);
+    if (library == nullptr) library = process::load_library(process::folder() / folder / "snug_mpi.so");
   }
   if (library == nullptr) fail("snug_mpi.so is not there or cannot be loaded");
-  void* const symbol = dlsym(library, "snug_ranks");
+  void* const symbol = process::symbol_of(library, "snug_ranks");
   if (symbol == nullptr) fail("snug_mpi.so is of another version");
   return reinterpret_cast<SnugRanksFunction>(symbol)();
 }

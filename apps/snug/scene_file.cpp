@@ -227,7 +227,7 @@ class SceneReader {
     if (fresh) {
       require_words(options, where);
       const std::filesystem::path own(path);
-      scene_.meshes.push_back({path, own.is_absolute() ? path : (folder_ / own).string(), options});
+      scene_.meshes.push_back({path, own.is_absolute() ? path : (folder_ / own).generic_string(), options});
     }
     return known->second;
   }
@@ -385,7 +385,7 @@ std::function<std::string(const std::string&)> beside(const std::string& path, c
                                                       std::uint64_t& of_all) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   return [folder, &read, &of_all](const std::string& other) {
-    std::string bytes = read((folder / other).string());
+    std::string bytes = read((folder / other).generic_string());
     of_all = fingerprint(bytes, of_all);
     return bytes;
   };

@@ -16,6 +16,7 @@
 #include "common.h"
 #include "mesh_reading.h"
 #include "pose.h"
+#include "process.h"
 #include "progress_bar.h"
 #include "scene_file.h"
 #include "still_page.h"
@@ -36,7 +37,7 @@ constexpr std::string_view data_ends = "</script>";
 // emscripten have none, and fill the still page, which the command holds itself.
 std::optional<std::string> find_page() {
   std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const std::filesystem::path folder = process::folder();
   for (const char* place : {"../share/snug/view.html", "../../web/snug.html"}) {
     const std::filesystem::path page = (folder / place).lexically_normal();
     if (std::filesystem::exists(page, ignored)) return page.string();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 /// Files as POSIX and Windows have them: names are UTF-8 of any length, nothing is translated in text. Functions return what
@@ -24,8 +25,16 @@ struct Status {
 /// Bytes read, at most `count`; 0 at the end.
 [[nodiscard]] std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count);
 [[nodiscard]] std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count);
+/// Opens a file to read and write it, which is made if there is none.
+[[nodiscard]] int open_to_update(const std::string& path);
+/// At once, or fails where another process holds it; ends with the descriptor.
+[[nodiscard]] int lock(int descriptor);
+/// The same as read() and write() at an offset; where read() and write() go on is not defined after it.
+[[nodiscard]] std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset);
+[[nodiscard]] std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t count, std::uint64_t offset);
+[[nodiscard]] int truncate(int descriptor, std::uint64_t size);
 int close(int descriptor) noexcept;
-/// Async-signal-safe.
+/// Async-signal-safe, as write() is.
 int remove(const char* path) noexcept;
 
 /// Is a file there that may be written?
@@ -51,6 +60,6 @@ void sync_folder(const std::string& folder);
 /// Cost:      below a millisecond for a hundred megabytes.
 void return_free_memory() noexcept;
 
-inline constexpr int standard_input = 0, standard_output = 1;
+inline constexpr int standard_input = 0, standard_output = 1, standard_error = 2;
 
 }  // namespace snug::system_files

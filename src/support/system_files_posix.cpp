@@ -3,6 +3,7 @@
 #include <support/system_files.h>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #ifdef __GLIBC__
@@ -55,6 +56,17 @@ std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) {
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) {
   return ::write(descriptor, bytes, count);
 }
+int open_to_update(const std::string& path) {
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+}
+int lock(int descriptor) { return ::flock(descriptor, LOCK_EX | LOCK_NB); }
+std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) {
+  return ::pread(descriptor, bytes, count, static_cast<off_t>(offset));
+}
+std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t count, std::uint64_t offset) {
+  return ::pwrite(descriptor, bytes, count, static_cast<off_t>(offset));
+}
+int truncate(int descriptor, std::uint64_t size) { return ::ftruncate(descriptor, static_cast<off_t>(size)); }
 int close(int descriptor) noexcept { return ::close(descriptor); }
 int remove(const char* path) noexcept { return ::unlink(path); }
 

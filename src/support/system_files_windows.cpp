@@ -66,7 +66,18 @@ Status status_from(const struct _stat64& found) {
 
 // Standard streams translate ends of lines unless told not to.
 void as_bytes(int descriptor) {
-  if (descriptor <= standard_output) static_cast<void>(::_setmode(descriptor, _O_BINARY));
+  if (descriptor <= standard_error) static_cast<void>(::_setmode(descriptor, _O_BINARY));
+}
+
+HANDLE handle_of(int descriptor) {
+  return reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));  // NOLINT: Windows declares it as a number
+}
+
+OVERLAPPED at(std::uint64_t offset) {
+  OVERLAPPED place{};
+  place.Offset = static_cast<DWORD>(offset);
+  place.OffsetHigh = static_cast<DWORD>(offset >> 32);
+  return place;
 }
 
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
@@ -100,6 +111,32 @@ std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) {
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) {
   as_bytes(descriptor);
   return ::_write(descriptor, bytes, static_cast<unsigned>(std::min(count, most_at_once)));
+}
+int open_to_update(const std::string& path) {
+  return ::_wopen(name_of(path).c_str(), _O_RDWR | _O_CREAT | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
+}
+int lock(int descriptor) {
+  OVERLAPPED everything{};
+  constexpr DWORD how = LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY;
+  return ::LockFileEx(handle_of(descriptor), how, 0, MAXDWORD, MAXDWORD, &everything) ? 0 : failed_as_windows_says();
+}
+std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) {
+  OVERLAPPED place = at(offset);
+  DWORD got = 0;
+  if (::ReadFile(handle_of(descriptor), bytes, static_cast<DWORD>(std::min(count, most_at_once)), &got, &place)) return got;
+  return ::GetLastError() == ERROR_HANDLE_EOF ? 0 : failed_as_windows_says();
+}
+std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t count, std::uint64_t offset) {
+  OVERLAPPED place = at(offset);
+  DWORD done = 0;
+  const auto part = static_cast<DWORD>(std::min(count, most_at_once));
+  return ::WriteFile(handle_of(descriptor), bytes, part, &done, &place) ? static_cast<std::ptrdiff_t>(done) : failed_as_windows_says();
+}
+int truncate(int descriptor, std::uint64_t size) {
+  const errno_t reason = ::_chsize_s(descriptor, static_cast<long long>(size));
+  if (reason == 0) return 0;
+  errno = reason;
+  return -1;
 }
 int close(int descriptor) noexcept { return ::_close(descriptor); }
 int remove(const char* path) noexcept {

@@ -13,6 +13,12 @@
 namespace snug::testing {
 namespace {
 
+// Or another build of it, such as one for another machine with what runs it; see scripts/check_cross.
+const char* command() {
+  const char* const other = std::getenv("SNUG_TESTED_COMMAND");
+  return other != nullptr ? other : SNUG_COMMAND;
+}
+
 std::string slurp(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
@@ -55,7 +61,7 @@ Outcome run(const char* program, const std::vector<std::string>& arguments, cons
 }  // namespace
 
 Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input) {
-  return run(SNUG_COMMAND, arguments, input, {});
+  return run(command(), arguments, input, {});
 }
 
 #ifdef SNUG_RESEARCH
@@ -65,11 +71,11 @@ Outcome run_research(const std::vector<std::string>& arguments, const std::strin
 #endif
 
 Outcome run_snug_in(const Surroundings& surroundings, const std::vector<std::string>& arguments) {
-  return run(SNUG_COMMAND, arguments, "", surroundings);
+  return run(command(), arguments, "", surroundings);
 }
 
 Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds) {
-  return run(SNUG_COMMAND, arguments, "", {{}, [milliseconds](int child) {
+  return run(command(), arguments, "", {{}, [milliseconds](int child) {
                                              usleep(static_cast<useconds_t>(milliseconds) * 1000);
                                              kill(child, SIGINT);
                                            }});

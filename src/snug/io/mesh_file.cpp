@@ -177,7 +177,7 @@ ReadOptions beside(const std::string& path, ReadOptions options, const Run& run)
   if (!options.other_file && path != "-") {
     options.other_file = [folder = std::filesystem::path(path).parent_path(),
                           monitor = monitor_of(run)](const std::string& other) {
-      return read_file((folder / other).string(), monitor);
+      return read_file((folder / other).generic_string(), monitor);
     };
   }
   return options;

@@ -191,11 +191,11 @@ class RobotReader {
         fail_in_file(name_, what + ": " + in_quotes(filename) + why);
       };
       if (const auto known = options_.packages.find(own); known != options_.packages.end())
-        return (fs::path(known->second) / path_inside(rest, name_, what)).string();
+        return (fs::path(known->second) / path_inside(rest, name_, what)).generic_string();
       const auto all = options_.packages.find("");
       if (all == options_.packages.end())
         fail(" is in a package whose folder is not known: give --package " + one_word(own) + "=FOLDER");
-      return (fs::path(all->second) / path).string();
+      return (fs::path(all->second) / path).generic_string();
     }
     std::string path = filename;
     if (filename.starts_with(file)) path = filename.substr(file.size());
@@ -217,7 +217,7 @@ class RobotReader {
                    what + ": " + in_quotes(filename) +
                        " leads out of the folder of the robot: give the folder that holds all by --root");
     }
-    return (folder_ / path).string();
+    return (folder_ / path).generic_string();
   }
   static std::string one_word(const std::string& name) {
     const std::string quoted = in_quotes(name);
@@ -237,7 +237,7 @@ class RobotReader {
     ControlMesh mesh;
     try {
       const ReadOptions reading{.notes = options_.notes, .other_file = [&](const std::string& other) {
-                                  return bytes_of((folder / other).string());
+                                  return bytes_of((folder / other).generic_string());
                                 }};
       mesh = parse_mesh(bytes_of(place), shown, reading);
     } catch (const InputError& error) {
