@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_set>
 #include <utility>
 
 #include <snug/distance.h>
@@ -38,14 +39,16 @@ constexpr double level_share = 0.4;
 // band's width, if that is less. Then shares of these, where the first do not do.
 constexpr double cell_of_level = 1.1, cell_of_width = 0.8;
 constexpr std::array cell_shares{1.0, 0.64, 0.4};
-// Of the band's width: errors of pieces; how far collapses move planes, at first and once facets are looked at one by one; how
-// far off the level vertices may be, and how far below it.
-constexpr double piece_error_share = 0x1p-6, first_move_share = 0.04, last_move_share = 0.5,
-                 vertex_share = 0.3, near_share = 0.1;
-// The least cosine between a facet's normal and the way from the surface to its centre.
-constexpr double least_facing = 0.3;
+// Of the band's width: errors of pieces; how far collapses move planes once facets are looked at one by one; how far off the level
+// vertices may be, and how far below it.
+constexpr double piece_error_share = 0x1p-6, last_move_share = 0.5, vertex_share = 0.3, near_share = 0.1;
+// The least cosine between a facet's normal and the way from the surface to its centre; between it and the mean one at a vertex where
+// the mesh is not bent.
+constexpr double least_facing = 0.3, least_flat = 0.8;
+// How far collapses move planes before: less, if that does not do.
+constexpr std::array first_move_shares{0.11, 0.04};
 constexpr int first_rounds = 8, max_rounds = 24, max_reductions = 5, max_steps = 8;
-constexpr std::size_t facets_beside = 20'000, max_boxes = 20'000;
+constexpr std::size_t facets_beside = 20'000, max_boxes = 20'000, max_known = 100'000;
 constexpr std::uint64_t least_pieces = 1u << 17;
 constexpr std::size_t max_contacts = 100'000, max_problems = 100;
 // Of a facet, to show that it is near. Rounding of a middle is within distance_rounding, as often as that.
@@ -118,19 +121,27 @@ std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, 
 
 Point3 centre_of(const Triangle& t) { return t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0])); }
 
+std::uint64_t hash_of(std::span<const Point3> points) {
+  std::uint64_t hash = points.size();
+  for (const Point3& p : points) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(p[a])) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+  }
+  return hash;
+}
+struct TriangleHash {
+  std::size_t operator()(const Triangle& t) const { return hash_of(t); }
+};
+
 // Answers about points and triangles that collapses ask for again, by their coordinates; later ones take the places of
 // former ones. No proof rests on it.
 class LookTable {
  public:
   template <class Find>
   bool ask(std::span<const Point3> of, const Find& find) {
-    std::uint64_t hash = of.size();
-    for (const Point3& p : of) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        hash = (hash ^ std::bit_cast<std::uint64_t>(p[a])) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 29;
-      }
-    }
+    const std::uint64_t hash = hash_of(of);
     std::atomic<std::uint64_t>& slot = slots_[hash >> 43];
     const std::uint64_t known = slot.load(std::memory_order_relaxed);
     if (known >> 1 == hash >> 1) return (known & 1u) != 0;
@@ -186,7 +197,15 @@ class EnvelopeMaker {
       if (!made) return without(HullFault::too_few_triangles, pieces_.members[0]);
       monitor_of(run_).report(0.4);
       mesh_ = std::move(*made);
-      if (!reduce(first_move_share, {})) continue;
+      const ClosedMesh whole = mesh_;
+      if (!halve_bent()) continue;
+      // Bridges may be far from surfaces, so that much is let pass there.
+      const auto moves = std::span(first_move_shares).subspan(ball_ ? 1 : 0);
+      const bool reduced = std::any_of(moves.begin(), moves.end(), [&](double move) {
+        mesh_ = whole;
+        return reduce(move, {});
+      });
+      if (!reduced) continue;
       monitor_of(run_).report(0.6);
       // Looked at here and there, judged at the end.
       ClosedMesh fine = mesh_;
@@ -270,9 +289,35 @@ class EnvelopeMaker {
       }
     });
   }
+  [[nodiscard]] double least_distance() const { return level() - near_share * (band_.upper - band_.lower); }
+  // Can facets be in the band where the mesh is bent, halved or not? Where gaps are too narrow for the cubes they cannot, whatever
+  // collapses.
+  bool halve_bent() {
+    std::vector<Vector3> normals(mesh_.points.size());
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+      const Vector3 normal = unit_normal(corners(t));
+      for (const Index v : mesh_.triangles[t]) normals[v] = normals[v] + normal;
+    }
+    std::vector<std::uint8_t> bent(mesh_.points.size(), 0), beside = bent;
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+      const Vector3 normal = unit_normal(corners(t));
+      for (const Index v : mesh_.triangles[t]) {
+        if (!(dot(normal, normals[v]) > least_flat * length(normals[v]))) bent[v] = 1;
+      }
+    }
+    wrong_.assign(mesh_.triangles.size(), proved);
+    for (Index t = 0; t < wrong_.size(); ++t) {
+      const auto& [a, b, c] = mesh_.triangles[t];
+      if (bent[a] == 0 && bent[b] == 0 && bent[c] == 0) continue;
+      wrong_[t] = to_halve;
+      beside[a] = beside[b] = beside[c] = 1;
+    }
+    push_off(least_distance(), beside);
+    return halve_wrong(first_rounds);
+  }
   // Fewer triangles, all of them proved. Where that fails all that is near stays as it is. False if it fails even so.
   bool reduce(double share, const std::function<bool(const Triangle&)>& accept) {
-    const double least = accept ? 0 : level() - near_share * (band_.upper - band_.lower);
+    const double least = accept ? 0 : least_distance();
     ClosedMesh whole = mesh_;
     std::vector<std::uint8_t> kept;
     for (int round = 0; round < max_reductions; ++round) {
@@ -322,17 +367,26 @@ class EnvelopeMaker {
     });
   }
 
-  // Judges what is not proved.
+  // Judges what is not proved, and was not before.
   void judge() {
+    std::vector<std::uint8_t> is_new(wrong_.size(), 0);
     parallel_for(wrong_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (wrong_[t] == proved) continue;
         monitor_.checkpoint();
         const Triangle facet = corners(static_cast<Index>(t));
+        if (in_band_.contains(facet)) {
+          wrong_[t] = proved;
+          continue;
+        }
         const QuadraticFoot foot = nearest_foot(pieces_.set, centre_of(facet));
-        wrong_[t] = is_in_band(facet, foot, proof) ? proved : to_halve;
+        is_new[t] = is_in_band(facet, foot, proof) ? 1 : 0;
+        wrong_[t] = is_new[t] != 0 ? proved : to_halve;
       }
     });
+    for (Index t = 0; t < wrong_.size(); ++t) {
+      if (is_new[t] != 0 && in_band_.size() < max_known) in_band_.insert(corners(t));
+    }
   }
   // Halves facets until all are in the band: false if these become more and more, or rounds do not do.
   bool halve_wrong(int rounds) {
@@ -499,7 +553,8 @@ class EnvelopeMaker {
   double radius_ = 0;  // of that
   ClosedMesh mesh_;
   LookTable looks_;
-  std::vector<std::uint8_t> wrong_;  // a State for each triangle
+  std::unordered_set<Triangle, TriangleHash> in_band_;  // proved to be
+  std::vector<std::uint8_t> wrong_;                     // a State for each triangle
 };
 
 }  // namespace
