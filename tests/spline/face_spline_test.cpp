@@ -50,7 +50,7 @@ std::vector<Case> cases(std::uint64_t seed) {
 TEST(face_spline, is_as_near_to_the_limit_as_it_says) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::size_t quads = 0, tips = 0, merged = 0, near = 0;
+  std::size_t quads = 0, tips = 0, bent = 0, merged = 0, near = 0;
   for (const Case& c : cases(41)) {
     SCOPED_TRACE(c.name);
     const LimitSurface surface(c.mesh, c.options, std::make_shared<BoundsCache>());
@@ -63,7 +63,11 @@ TEST(face_spline, is_as_near_to_the_limit_as_it_says) {
       depths.corners.fill(deepest);
       depths.sides.fill(random() % 3 == 0 ? 1 : deepest);
       if (depths.sides[0] < deepest) depths.corners.fill(1);
-      QuadPieces quad(patch, depths, 0.05);
+      std::array<QuadFlat, 4> flats{};
+      if (!patch.kind->transient() && tensor_degree(surface.rules().basis) == 3 && random() % 2 == 0) {
+        for (QuadFlat& flat : flats) flat = {0.3 * unit(random), 2, static_cast<unsigned>(random() % 3)};
+      }
+      QuadPieces quad(patch, depths, 0.05, flats);
       std::vector<FacePart> parts;
       double area = 0;
       for (QuadPiece& piece : quad.take()) {
@@ -71,7 +75,8 @@ TEST(face_spline, is_as_near_to_the_limit_as_it_says) {
         area += (box.u1 - box.u0) * (box.v1 - box.v0);
         tips += piece.tip ? 1 : 0;
         merged += piece.columns * piece.rows > 1 ? 1 : 0;
-        parts.push_back({box, piece.piece, patch.origin, piece.tip, piece.distance});
+        bent += piece.bent ? 1 : 0;
+        parts.push_back({box, piece.piece, patch.origin, piece.tip || piece.bent, piece.distance});
       }
       ASSERT_EQ(area, 1);
       ++quads;
@@ -103,6 +108,7 @@ TEST(face_spline, is_as_near_to_the_limit_as_it_says) {
   EXPECT_GT(quads, testing::share(250));
   EXPECT_GT(tips, testing::share(500));
   EXPECT_GT(merged, testing::share(20));
+  EXPECT_GT(bent, testing::share(500));
   EXPECT_GT(near, quads / 4);  // bounds that say something
 }
 

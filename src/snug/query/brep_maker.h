@@ -13,6 +13,10 @@ namespace snug {
 
 /// Share of the requested error for what is fitted; the rest is for rounding.
 inline constexpr double share_of_fits = 0.999;
+/// The same for how far faces are bent into the tangent planes of extraordinary vertices.
+inline constexpr double share_of_flats = 0.5;
+/// Sine of the angle between normals that are taken for one.
+inline constexpr double same_plane = 1e-9;
 /// Rounds of splits towards a requested angle.
 inline constexpr int most_angle_rounds = 16;
 

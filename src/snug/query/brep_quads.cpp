@@ -14,6 +14,8 @@ namespace {
 
 constexpr double level_factor = 2.5;  // by which a split brings a tip nearer, cautiously
 constexpr std::uint8_t most_depth = 24;
+constexpr std::uint32_t least_flat_quads = 8;
+constexpr unsigned first_flat_level = 2, most_flat_splits = 4;
 
 // How many spans the B-spline surface of a quad has: knots run across all of it.
 std::uint64_t spans_of(const std::vector<QuadPiece>& pieces) {
@@ -40,6 +42,7 @@ class QuadBrepMaker : public BrepMaker {
   void fit() override {
     std::vector<std::uint32_t> all(pieces_.size());
     for (std::uint32_t q = 0; q < all.size(); ++q) all[q] = q;
+    if (max_angle_ && degree_ == 3) find_flats();
     fit(all, 0);
     require_spans(spans());
     refine_tips();
@@ -69,6 +72,102 @@ class QuadBrepMaker : public BrepMaker {
     return true;
   }
 
+  // The limit surface about a corner of a quad, level by level: points whose larger parameter is 2^-level of the side.
+  struct Ring {
+    double nearest = INFINITY, farthest = 0, highest = 0;  // from the corner; over the tangent plane
+  };
+  [[nodiscard]] static Ring ring_at(LimitEvaluator& evaluator, std::size_t corner, unsigned level) {
+    const double x = corner == 1 || corner == 2 ? 1 : 0, y = corner >= 2 ? 1 : 0;
+    const LimitFrame center = evaluator.frame({0, 0, x, y});
+    const double size = std::ldexp(1.0, -static_cast<int>(level));
+    Ring ring;
+    for (int k = 0; k <= 16; ++k) {
+      const double a = size * std::min(1.0, k / 8.0), b = size * std::min(1.0, 2 - k / 8.0);
+      const Vector3 d =
+          evaluator.frame({0, 0, std::fabs(x - a), std::fabs(y - b)}).point.relative - center.point.relative;
+      ring.nearest = std::min(ring.nearest, length(d));
+      ring.farthest = std::max(ring.farthest, length(d));
+      ring.highest = std::max(ring.highest, std::fabs(dot(*center.normal, d)));
+    }
+    return ring;
+  }
+
+  // Vertices about which faces become flat, and how far: as brep_triangles.cpp does for Loop's scheme.
+  void find_flats() {
+    std::vector<std::uint32_t> valences(layout_.name_count());
+    for (const std::uint32_t q : irregular_) {
+      for (const std::uint32_t name : layout_.quads()[q].corners) ++valences[name];
+    }
+    std::vector<std::optional<Vector3>> normals(valences.size());
+    flats_.assign(valences.size(), {INFINITY, most_depth, 1});
+    changed_flats_.assign(valences.size(), false);
+    const auto each_corner = [&](const auto& visit) {
+      for (const std::uint32_t q : irregular_) {
+        const SurfaceQuad& quad = layout_.quads()[q];
+        const Patch patch = surface_.patch(quad.patch);
+        LimitEvaluator evaluator(patch);
+        for (std::size_t k = 0; k < 4; ++k) {
+          if (valences[quad.corners[k]] >= least_flat_quads && flats_[quad.corners[k]].radius > 0)
+            visit(patch, evaluator, quad, q, k);
+        }
+      }
+    };
+    each_corner([&](const Patch& patch, LimitEvaluator& evaluator, const SurfaceQuad& quad, std::uint32_t,
+                    std::size_t k) {
+      QuadFlat& flat = flats_[quad.corners[k]];
+      const auto here = evaluator.frame({0, 0, k == 1 || k == 2 ? 1.0 : 0.0, k >= 2 ? 1.0 : 0.0}).normal;
+      std::optional<Vector3>& normal = normals[quad.corners[k]];
+      if (!normal) normal = here;
+      if (!here || patch.kind->transient() || length(cross(*here, *normal)) > same_plane) {
+        flat.radius = 0;
+        return;
+      }
+      Ring ring;
+      for (unsigned level = first_flat_level; level < most_depth; ++level) {
+        ring = ring_at(evaluator, k, level - (quad.half ? 1 : 0));
+        if (ring.highest <= share_of_flats * error_) break;
+      }
+      flat.radius = std::min(flat.radius, ring.nearest);
+    });
+    // Levels of pieces in the ball; tips are in its inner part.
+    each_corner([&](const Patch&, LimitEvaluator& evaluator, const SurfaceQuad& quad, std::uint32_t q,
+                    std::size_t k) {
+      QuadFlat& flat = flats_[quad.corners[k]];
+      unsigned level = first_flat_level;
+      const unsigned less = quad.half ? 1 : 0;
+      while (level < most_depth && ring_at(evaluator, k, level - less).nearest >= flat.radius) ++level;
+      flat.first = std::min(flat.first, level);
+      while (level < most_depth &&
+             ring_at(evaluator, k, level - less).farthest > FlatBall::inner * flat.radius)
+        ++level;
+      QuadPiece tip;
+      tip.level = level - less;
+      const std::uint32_t end = (std::uint32_t{1} << tip.level) - 1;
+      tip.i = k == 1 || k == 2 ? end : 0;
+      tip.j = k >= 2 ? end : 0;
+      layout_.deepen(q, tip, 0, most_depth);
+    });
+    static_cast<void>(layout_.take_changed({}));
+  }
+  [[nodiscard]] bool is_flat(std::uint32_t name) const {
+    return !flats_.empty() && flats_[name].radius > 0 && std::isfinite(flats_[name].radius);
+  }
+  [[nodiscard]] std::array<QuadFlat, 4> flats_of(std::uint32_t q) const {
+    std::array<QuadFlat, 4> flats{};
+    const SurfaceQuad& quad = layout_.quads()[q];
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!is_flat(quad.corners[k])) continue;
+      flats[k] = flats_[quad.corners[k]];
+      flats[k].first -= quad.half ? 1 : 0;
+    }
+    return flats;
+  }
+  void split_flat(std::uint32_t name) {
+    if (flats_[name].splits == most_flat_splits) return;
+    ++flats_[name].splits;
+    changed_flats_[name] = true;
+  }
+
   // Makes the pieces of some quads, by their present depths.
   void fit(const std::vector<std::uint32_t>& quads, double done) {
     std::atomic<std::size_t> count{0};
@@ -77,7 +176,9 @@ class QuadBrepMaker : public BrepMaker {
         [&](Patch& patch, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             surface_.patch(layout_.quads()[quads[i]].patch, patch);
-            pieces_[quads[i]] = QuadPieces(patch, layout_.depths(quads[i]), share_of_fits * error_).take();
+            pieces_[quads[i]] =
+                QuadPieces(patch, layout_.depths(quads[i]), share_of_fits * error_, flats_of(quads[i]))
+                    .take();
           }
           count += end - begin;
           monitor_.report(
@@ -94,6 +195,15 @@ class QuadBrepMaker : public BrepMaker {
   // The same for quads whose depths have changed. If the budget does not allow it they keep their pieces, and the result is false.
   bool fit_changed() {
     changed_ = layout_.take_changed(irregular_);
+    for (const std::uint32_t q : irregular_) {
+      const auto& corners = layout_.quads()[q].corners;
+      if (!flats_.empty() && std::any_of(corners.begin(), corners.end(),
+                                         [&](std::uint32_t name) { return changed_flats_[name]; }))
+        changed_.push_back(q);
+    }
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    std::fill(changed_flats_.begin(), changed_flats_.end(), false);
     std::vector<std::vector<QuadPiece>> before;
     for (const std::uint32_t q : changed_) before.push_back(pieces_[q]);
     fit(changed_, 0.7);
@@ -110,6 +220,11 @@ class QuadBrepMaker : public BrepMaker {
       for (const std::uint32_t q : changed_) {
         for (const QuadPiece& piece : pieces_[q]) {
           if (piece.tip && piece.corners() == 0) layout_.join_depths(q, piece);
+          if (piece.bent && piece.distance > share_of_fits * error_) {
+            const ParameterBox box = piece.box();
+            const bool right = box.u0 >= 0.5, upper = box.v0 >= 0.5;
+            split_flat(layout_.quads()[q].corners[upper ? (right ? 2 : 3) : (right ? 1 : 0)]);
+          }
           if (!piece.tip || piece.distance <= share_of_fits * error_) continue;
           const double levels = std::log(piece.distance / (share_of_fits * error_)) / std::log(level_factor);
           const double more = std::clamp(std::floor(levels), 1.0, 8.0);
@@ -123,7 +238,17 @@ class QuadBrepMaker : public BrepMaker {
 
   bool deepen_at_breaks(const std::vector<Break>& breaks) override {
     std::set<std::pair<std::uint32_t, std::size_t>> sides;
-    for (const Break& there : breaks) sides.insert({there.quad, there.side});
+    std::set<std::uint32_t> names;
+    for (const Break& there : breaks) {
+      const std::uint32_t name =
+          layout_.quads()[there.quad].corners[(there.side + (there.at < 0.5 ? 0 : 1)) % 4];
+      if (is_flat(name)) {
+        names.insert(name);
+      } else {
+        sides.insert({there.quad, there.side});
+      }
+    }
+    for (const std::uint32_t name : names) split_flat(name);
     for (const auto& [q, side] : sides) {
       for (const QuadPiece& piece : pieces_[q]) {
         if (piece.tip && (piece.sides() >> side) % 2 == 1) layout_.deepen(q, piece, 1, most_depth);
@@ -155,7 +280,7 @@ class QuadBrepMaker : public BrepMaker {
           parts.push_back({{u + box.u0, u + box.u1, v + box.v0, v + box.v1},
                            placed.turn == 0 ? piece.piece : turned(piece.piece, placed.turn),
                            origin,
-                           piece.tip,
+                           piece.tip || piece.bent,
                            piece.distance});
         }
       }
@@ -166,6 +291,8 @@ class QuadBrepMaker : public BrepMaker {
   std::size_t degree_;
   std::vector<std::uint32_t> irregular_, changed_;  // quads
   std::vector<std::vector<QuadPiece>> pieces_;      // of quads
+  std::vector<QuadFlat> flats_;                     // of corners, by name; levels as of whole quads
+  std::vector<bool> changed_flats_;
   std::vector<Point3> origins_;
 };
 

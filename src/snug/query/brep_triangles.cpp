@@ -15,12 +15,10 @@ namespace {
 
 constexpr double share_of_curves = 0.4;     // of the error, for curves of edges
 constexpr std::size_t most_spans = 40'000;  // of a square of a face
-constexpr double share_of_flats = 0.5;      // likewise, for flattening about extraordinary vertices
-constexpr std::uint32_t least_flat_valence = 11;
+constexpr std::uint32_t least_flat_triangles = 11;
 constexpr unsigned most_flat_level = 40;
 constexpr double budget_factor = 4;  // by which the error grows if spans do not suffice
 constexpr double same_jet = 0x1p-42;
-constexpr double same_plane = 1e-9;  // sine of the angle between normals
 constexpr double least_span =
     0x1p-28;  // of an edge, between knots that are made where faces meet at an angle
 
@@ -106,7 +104,7 @@ class TriangleBrepMaker : public BrepMaker {
     for (const PatchId patch : patches) {
       const auto names = surface_.corner_names(patch);
       for (unsigned k = 0; k < 3; ++k) {
-        if (valences[names[k]] < least_flat_valence) continue;
+        if (valences[names[k]] < least_flat_triangles) continue;
         TriangleTree tree(surface_.patch(patch), k, SquareHalf::lower);
         const auto here = tree.normal(0);
         std::optional<Vector3>& normal = normals[names[k]];

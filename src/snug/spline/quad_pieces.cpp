@@ -55,26 +55,33 @@ std::optional<CornerJet> jet_at(ControlNet net, std::size_t corner, std::size_t 
   return {};
 }
 
+// Puts Bezier points of degree 3 at a corner.
+void put_jet(TensorPiece& bezier, std::size_t x, std::size_t y, const CornerJet& jet, double width = 1,
+             double height = 1) {
+  const double su = (x == 0 ? 1.0 / 3 : -1.0 / 3) / width, sv = (y == 0 ? 1.0 / 3 : -1.0 / 3) / height;
+  const std::size_t i = 3 * x, j = 3 * y, a = x == 0 ? 1 : 2, b = y == 0 ? 1 : 2;
+  bezier.at(i, j) = jet.point;
+  bezier.at(a, j) = jet.point + su * jet.along_u;
+  bezier.at(i, b) = jet.point + sv * jet.along_v;
+  bezier.at(a, b) = bezier.at(a, j) + sv * jet.along_v + (su * sv) * jet.twist;
+}
+
 // The Bezier points of a tip: from derivatives at regular corners, else from limit points that it passes through.
 class TipFit {
  public:
   /// Nets: of one row or column of parts that cover the tip.
   TipFit(std::span<const PartNet> nets, const ParameterBox& box, std::size_t degree,
-         LimitEvaluator& evaluator)
-      : box_(box), evaluator_(evaluator) {
+         LimitEvaluator& evaluator, const FlatBall* ball)
+      : box_(box), evaluator_(evaluator), ball_(ball) {
     for (std::size_t k = 0; k < 4; ++k) {
       const auto [x, y] = corner_places[k];
       const PartNet& part = *std::find_if(nets.begin(), nets.end(), [x = x, y = y](const PartNet& p) {
         return (x == 0 ? p.box.u0 == 0 : p.box.u1 == 1) && (y == 0 ? p.box.v0 == 0 : p.box.v1 == 1);
       });
-      if (const auto jet = jet_at(part.net, k, degree)) {
+      if (auto jet = jet_at(part.net, k, degree)) {
         known_[k] = true;
-        const double su = (x == 0 ? 1.0 / 3 : -1.0 / 3) / (part.box.u1 - part.box.u0);
-        const double sv = (y == 0 ? 1.0 / 3 : -1.0 / 3) / (part.box.v1 - part.box.v0);
-        point(k, 0, 0) = jet->point;
-        point(k, 1, 0) = jet->point + su * jet->along_u;
-        point(k, 0, 1) = jet->point + sv * jet->along_v;
-        point(k, 1, 1) = point(k, 1, 0) + sv * jet->along_v + (su * sv) * jet->twist;
+        if (ball_ != nullptr) ball_->apply(*jet);
+        put_jet(bezier_, x, y, *jet, part.box.u1 - part.box.u0, part.box.v1 - part.box.v0);
       } else {
         point(k, 0, 0) = limit(static_cast<double>(x), static_cast<double>(y));
       }
@@ -94,7 +101,11 @@ class TipFit {
   [[nodiscard]] Place place(double u, double v) const {
     return {0, 0, box_.u0 + (box_.u1 - box_.u0) * u, box_.v0 + (box_.v1 - box_.v0) * v};
   }
-  [[nodiscard]] Vector3 limit(double u, double v) { return evaluator_.frame(place(u, v)).point.relative; }
+  [[nodiscard]] Vector3 limit(double u, double v) {
+    CornerJet jet{evaluator_.frame(place(u, v)).point.relative, {}, {}, {}};
+    if (ball_ != nullptr) ball_->apply(jet);
+    return jet.point;
+  }
 
   // Bezier points next to extraordinary ends of a side: through one or two limit points, then into the tangent plane.
   void fit_side(std::size_t k) {
@@ -143,6 +154,7 @@ class TipFit {
 
   ParameterBox box_;
   LimitEvaluator& evaluator_;
+  const FlatBall* ball_;
   std::array<bool, 4> known_{};
   TensorPiece bezier_ = bezier_piece(TensorPiece::max_degree);
 };
@@ -239,12 +251,24 @@ struct QuadPieces::Draft {
   std::vector<PartNet> nets;
 };
 
-QuadPieces::QuadPieces(const Patch& patch, const QuadDepths& depths, double error)
-    : depths_(depths), error_(error), evaluator_(patch), degree_(tensor_degree(patch.kind->rules().basis)) {
+QuadPieces::QuadPieces(const Patch& patch, const QuadDepths& depths, double error,
+                       const std::array<QuadFlat, 4>& flats)
+    : depths_(depths),
+      flats_(flats),
+      error_(error),
+      evaluator_(patch),
+      degree_(tensor_degree(patch.kind->rules().basis)) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (flats_[k].radius == 0) continue;
+    const auto [x, y] = corner_places[k];
+    const LimitFrame frame = evaluator_.frame({0, 0, static_cast<double>(x), static_cast<double>(y)});
+    if (frame.normal) balls_[k] = {frame.point.relative, *frame.normal, flats_[k].radius};
+  }
   open(control_net(patch), {});
   for (Draft& draft : drafts_) {
     if (drafts_.size() == 1) break;  // a lattice, by which faces are packed
     TensorPiece& piece = draft.piece.piece;
+    if (draft.piece.bent) continue;
     if (!draft.piece.tip) piece = bezier_on(piece, {});
     if (tips_ > 0 && !draft.piece.tip) piece = raised(piece);
   }
@@ -279,9 +303,48 @@ void QuadPieces::open(ControlNet net, const QuadPiece& place) {
     QuadPiece quarter = quarter_of(place, k);
     if (quarters.regular(k)) {
       quarter.piece = tensor_piece(quarters.lattice(k), degree_);
-      drafts_.push_back({std::move(quarter), {}});
+      if (const FlatBall* ball = ball_at(place, quarter.level)) {
+        add_bent(quarter, *ball, flats_[static_cast<std::size_t>(ball - balls_.data())].splits);
+      } else {
+        drafts_.push_back({std::move(quarter), {}});
+      }
     } else {
       open(quarters.net(k), quarter);
+    }
+  }
+}
+
+// About the corner that a part touches, if its pieces of this level are bent.
+const FlatBall* QuadPieces::ball_at(const QuadPiece& place, unsigned level) const {
+  for (std::size_t k = 0; k < 4; ++k) {
+    if ((place.corners() >> k) % 2 == 1 && balls_[k].radius > 0 && level >= flats_[k].first)
+      return &balls_[k];
+  }
+  return nullptr;
+}
+
+// A polynomial as bicubics by its bent positions and derivatives.
+void QuadPieces::add_bent(const QuadPiece& quarter, const FlatBall& ball, unsigned splits) {
+  const TensorPiece whole = raised(bezier_on(quarter.piece, {}));
+  const std::uint32_t count = 1u << splits;
+  const double size = 1.0 / count;
+  for (std::uint32_t j = 0; j < count; ++j) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const TensorPiece exact = bezier_on(whole, {i * size, (i + 1) * size, j * size, (j + 1) * size});
+      QuadPiece part;
+      part.level = quarter.level + splits;
+      part.i = quarter.i * count + i;
+      part.j = quarter.j * count + j;
+      part.bent = true;
+      part.piece = bezier_piece(3);
+      for (const auto& [x, y] : corner_places) {
+        CornerJet jet = corner_jet(exact, x, y);
+        ball.apply(jet);
+        put_jet(part.piece, x, y, jet);
+      }
+      take_largest(part.piece);
+      part.distance = distance_bound(exact, part.piece);
+      drafts_.push_back({std::move(part), {}});
     }
   }
 }
@@ -364,7 +427,8 @@ void QuadPieces::fit_block(std::span<Draft> tips, bool along_u) {
     block.nets.push_back(
         {tips[k].nets[0].net, along_u ? ParameterBox{low, high, 0, 1} : ParameterBox{0, 1, low, high}});
   }
-  block.piece.piece = TipFit(block.nets, block.piece.box(), degree_, evaluator_).bezier();
+  const FlatBall* ball = block.piece.level == 0 ? nullptr : ball_at(block.piece, block.piece.level);
+  block.piece.piece = TipFit(block.nets, block.piece.box(), degree_, evaluator_, ball).bezier();
   if (count == 1 || is_border_of(block.piece, along_u, 2 * count)) {
     block.piece.distance = tip_distance(block.nets, block.piece.piece, degree_, 0.5 * error_);
     if (count == 1 || block.piece.distance <= error_) {

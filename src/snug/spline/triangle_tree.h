@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <snug/patch/limit_evaluator.h>
-#include <snug/spline/tensor_piece.h>
+#include <snug/spline/flat_ball.h>
 
 namespace snug {
 
@@ -31,16 +31,6 @@ struct QuarticTriangle {
 /// The same on a rectangle of the square's parameters that lies in the half; the bicubic's Bezier points are those on it.
 [[nodiscard]] double distance_bound(const QuarticTriangle& quartic, const TensorPiece& bicubic,
                                     SquareHalf half, const ParameterBox& box);
-
-/// A ball around an extraordinary vertex in which faces may be flat: from the inner radius on the surface is bent into the tangent
-/// plane, in a way that depends on its points alone. So faces around the vertex are bent alike.
-struct FlatBall {
-  Vector3 center, normal;
-  double inner_sq, outer_sq;
-
-  /// Bends the point; derivatives likewise.
-  void apply(CornerJet& jet) const;
-};
 
 /// The limit surface of a triangle of Loop's scheme, laid on half of a unit square: polynomials, and nets that are split
 /// where questions need it. Points are relative to the patch's origin.
