@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <snug/geometry/rounding.h>
@@ -53,17 +54,21 @@ constexpr HalfWeights along_v(SquareHalf half) {
   return half == SquareHalf::lower ? HalfWeights{0, -1, 1} : HalfWeights{-1, 0, 1};
 }
 
-// Polar form of a quartic.
-Vector3 polar(std::array<Vector3, quartic_count> p, const std::array<HalfWeights, 4>& at) {
-  for (std::size_t d = 4; d > 0; --d) {
-    const HalfWeights& b = at[4 - d];
-    for (std::size_t j = 0; j < d; ++j) {
-      for (std::size_t i = 0; i + j < d; ++i) {
-        p[bezier_index(d - 1, i, j)] = b[0] * p[bezier_index(d, i, j)] + b[1] * p[bezier_index(d, i + 1, j)] +
-                                       b[2] * p[bezier_index(d, i, j + 1)];
-      }
+// A step of a quartic's polar form: one argument is given, what is left is of degree d - 1.
+void step_polar(std::span<Vector3> p, std::size_t d, const HalfWeights& b) {
+  for (std::size_t j = 0; j < d; ++j) {
+    for (std::size_t i = 0; i + j < d; ++i) {
+      p[bezier_index(d - 1, i, j)] = b[0] * p[bezier_index(d, i, j)] + b[1] * p[bezier_index(d, i + 1, j)] +
+                                     b[2] * p[bezier_index(d, i, j + 1)];
     }
   }
+}
+// The last two steps, of a quadratic.
+Vector3 polar(std::span<const Vector3> quadratic, const HalfWeights& a, const HalfWeights& b) {
+  std::array<Vector3, bezier_count(2)> p;
+  std::copy_n(quadratic.begin(), p.size(), p.begin());
+  step_polar(p, 2, a);
+  step_polar(p, 1, b);
   return p[0];
 }
 
@@ -300,10 +305,11 @@ std::optional<CornerJet> TriangleTree::limit_jet(double u, double v) {
   }
   const Node& there = nodes_[node];
   const HalfWeights at = weights_at(there.half, u, v), du = along_u(there.half), dv = along_v(there.half);
-  const std::array<Vector3, quartic_count>& p = there.quartic->points;
-  return CornerJet{polar(p, {at, at, at, at}), (4 * scale) * polar(p, {at, at, at, du}),
-                   (4 * scale) * polar(p, {at, at, at, dv}),
-                   (12 * scale * scale) * polar(p, {at, at, du, dv})};
+  std::array<Vector3, quartic_count> p = there.quartic->points;
+  step_polar(p, 4, at);
+  step_polar(p, 3, at);
+  return CornerJet{polar(p, at, at), (4 * scale) * polar(p, at, du), (4 * scale) * polar(p, at, dv),
+                   (12 * scale * scale) * polar(p, du, dv)};
 }
 
 std::optional<CornerJet> TriangleTree::jet(double u, double v) {
