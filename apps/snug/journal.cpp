@@ -101,8 +101,7 @@ std::optional<SceneAnswer> Journal::find(const PartPair& parts) const {
   PartPair read;
   SceneAnswer answer;
   const std::ptrdiff_t got = system_files::read_at(descriptor_, line.data(), line.size(), at->offset);
-  const bool whole =
-      got == std::ssize(line) && parse_line(line, read, answer) && read == parts;
+  const bool whole = got == std::ssize(line) && parse_line(line, read, answer) && read == parts;
   if (!whole) fail("was changed by somebody else; start again with a new journal");
   return answer;
 }

@@ -80,7 +80,9 @@ void load_what_unwinds() noexcept {
 #endif
 }
 
-void* load_library(const std::filesystem::path& file) { return ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL); }
+void* load_library(const std::filesystem::path& file) {
+  return ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+}
 void* symbol_of(void* library, const char* name) { return ::dlsym(library, name); }
 
 }  // namespace snug::command::process

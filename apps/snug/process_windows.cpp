@@ -1,8 +1,8 @@
 #ifdef _WIN32
 
 #include <io.h>
-#include <windows.h>
 #include <shellapi.h>
+#include <windows.h>
 
 #include <cstdint>
 

@@ -31,7 +31,8 @@ struct Status {
 [[nodiscard]] int lock(int descriptor);
 /// The same as read() and write() at an offset; where read() and write() go on is not defined after it.
 [[nodiscard]] std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset);
-[[nodiscard]] std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t count, std::uint64_t offset);
+[[nodiscard]] std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t count,
+                                      std::uint64_t offset);
 [[nodiscard]] int truncate(int descriptor, std::uint64_t size);
 int close(int descriptor) noexcept;
 /// Async-signal-safe, as write() is.

@@ -118,19 +118,24 @@ int open_to_update(const std::string& path) {
 int lock(int descriptor) {
   OVERLAPPED everything{};
   constexpr DWORD how = LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY;
-  return ::LockFileEx(handle_of(descriptor), how, 0, MAXDWORD, MAXDWORD, &everything) ? 0 : failed_as_windows_says();
+  return ::LockFileEx(handle_of(descriptor), how, 0, MAXDWORD, MAXDWORD, &everything)
+             ? 0
+             : failed_as_windows_says();
 }
 std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) {
   OVERLAPPED place = at(offset);
   DWORD got = 0;
-  if (::ReadFile(handle_of(descriptor), bytes, static_cast<DWORD>(std::min(count, most_at_once)), &got, &place)) return got;
+  if (::ReadFile(handle_of(descriptor), bytes, static_cast<DWORD>(std::min(count, most_at_once)), &got,
+                 &place))
+    return got;
   return ::GetLastError() == ERROR_HANDLE_EOF ? 0 : failed_as_windows_says();
 }
 std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t count, std::uint64_t offset) {
   OVERLAPPED place = at(offset);
   DWORD done = 0;
   const auto part = static_cast<DWORD>(std::min(count, most_at_once));
-  return ::WriteFile(handle_of(descriptor), bytes, part, &done, &place) ? static_cast<std::ptrdiff_t>(done) : failed_as_windows_says();
+  return ::WriteFile(handle_of(descriptor), bytes, part, &done, &place) ? static_cast<std::ptrdiff_t>(done)
+                                                                        : failed_as_windows_says();
 }
 int truncate(int descriptor, std::uint64_t size) {
   const errno_t reason = ::_chsize_s(descriptor, static_cast<long long>(size));

@@ -76,9 +76,9 @@ Outcome run_snug_in(const Surroundings& surroundings, const std::vector<std::str
 
 Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds) {
   return run(command(), arguments, "", {{}, [milliseconds](int child) {
-                                             usleep(static_cast<useconds_t>(milliseconds) * 1000);
-                                             kill(child, SIGINT);
-                                           }});
+                                          usleep(static_cast<useconds_t>(milliseconds) * 1000);
+                                          kill(child, SIGINT);
+                                        }});
 }
 
 std::string model(const std::string& name) { return testing::models_dir() + "/" + name; }
