@@ -394,7 +394,7 @@ export interface BoundSummary {
 }
 export interface Tessellation {
   /** Corners of triangles. */ positions: Float64Array;
-  /** Unit limit normals at `positions`, at a crease of one side, 0 0 0 where there is none. */ normals: Float64Array;
+  /** Unit limit normals at `positions`, 0 0 0 where there is none. */ normals: Float64Array;
   /** Rows of `positions`, oriented as the faces. */ triangles: Uint32Array;
   /** Of each triangle the face of the surface (of dual schemes the vertex). */ owners: Uint32Array;
   /** Proved: triangles and surface are nowhere farther apart, either way. */ errorBound: number;
@@ -467,7 +467,7 @@ export interface Deviation {
   /** Of points of the candidate from the surface. */ fromCandidate: OneSidedDistance;
   /** With solid: how far the candidate lies inside. */ inside: OneSidedDistance | null;
   /** With solid: how far the candidate lies outside. */ outside: OneSidedDistance | null;
-  /** With a threshold: 'within', both distances are at most that; 'exceeds', one is greater; or 'undecided'. */ verdict: DeviationVerdict | null;
+  /** With a threshold: 'within', 'exceeds' or 'undecided'. */ verdict: DeviationVerdict | null;
   /** 'complete': each interval is as narrow as requested or, with a threshold, each question answered. */ outcome: Outcome;
 }
 // End of these answers.
