@@ -17,7 +17,7 @@ import numpy as np
 
 bpy.ops.preferences.addon_enable(module="snug_blender")
 import snug  # noqa: E402  (which the add-on has found)
-from snug_blender import cages, live, operators, words  # noqa: E402
+from snug_blender import cages, live, operators, panel, words  # noqa: E402
 
 SMOOTH, SEMI_SHARP = 2e-7, 1e-6  # of the size: single precision, and what it adds up to at semi-sharp creases
 
@@ -350,6 +350,13 @@ def test_refusals():
         raise AssertionError("a mesh without faces was taken")
     except RuntimeError as error:
         assert "no faces" in str(error), error
+
+
+def test_answers_are_shown_whole():
+    answer = "Cube and Cube.001 do not touch: proved\nnearest at the mark"
+    for width in (100, 205, 400):
+        lines = panel.lines_of(answer, width)
+        assert " ".join(lines) == answer.replace("\n", " ") and all(len(line) <= max(16, (width - 60) / 6.5) for line in lines)
 
 
 def test_words_round_outwards():

@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar's tab, and what scenes remember: the last answer, and whether drags ask."""
 
+import textwrap
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
+
+
+def lines_of(answer, width):
+    """The answer in lines that a panel of so many pixels shows whole: Blender leaves out the middle of longer ones, which may be a `not`."""
+    return [part for line in answer.split("\n")[:12] for part in textwrap.wrap(line, max(16, int((width - 60) / 6.5)))]
 
 
 class SNUG_PT_panel(bpy.types.Panel):
@@ -28,7 +35,7 @@ class SNUG_PT_panel(bpy.types.Panel):
         make.operator("snug.step", icon="EXPORT")
         if scene.snug_answer:
             box = layout.box().column(align=True)
-            for line in scene.snug_answer.split("\n")[:12]:
+            for line in lines_of(scene.snug_answer, context.region.width / context.preferences.system.ui_scale):
                 box.label(text=line)
 
 
