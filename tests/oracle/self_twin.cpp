@@ -178,13 +178,13 @@ Region cropped(const Region& region, const std::vector<Box>& boxes, const Point&
   return part;
 }
 
-bool crosses_itself(const Region& region) {
+bool crosses_itself(const Region& region, double share) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (const auto& face : region.mesh.polygons) {
     if (std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return region.marked[v]; })) continue;
     for (std::size_t k = 2; k < face.size(); ++k) triangles.push_back({face[0], face[k - 1], face[k]});
   }
-  return crossing_pair(region.mesh.points, triangles, 0, 0x1p-10).has_value();
+  return crossing_pair(region.mesh.points, triangles, 0, share).has_value();
 }
 
 }  // namespace
@@ -211,7 +211,7 @@ bool crosses_near(TaggedMesh mesh, const WindingScheme& scheme, const Point& pla
     while (reach > within && std::count_if(boxes.begin(), boxes.end(), is_near) > most_faces)
       reach = std::max(reach / 2, within);
     region = cropped(region, boxes, place, reach);
-    if (level >= small && crosses_itself(region)) return true;
+    if (level >= small && crosses_itself(region, std::ldexp(0x1p-10, small - level))) return true;
   }
   return false;
 }

@@ -18,7 +18,8 @@ namespace oracle {
 
 /// Does a limit surface cross itself within some distance of a place, about? Only the faces near it are refined, level by level, until
 /// they are small beside that distance. From the seventh level on triangles are small beside the surface's curvature: an edge of one must
-/// pass through another one without a common vertex, off its ends and sides by more than a thousandth of the smaller one's longest edge.
+/// pass through another one without a common vertex, off its ends and sides by more than a thousandth of the smaller one's longest edge, and
+/// half that share at each further level, as triangles become flatter.
 ///
 /// Faces left out change the rules at those that stay: vertices that any of them bears upon are marked, and their triangles not asked.
 [[nodiscard]] bool crosses_near(TaggedMesh mesh, const WindingScheme& scheme, const Point& place,
