@@ -29,9 +29,8 @@ struct Distance {
 ///
 /// Guarantee: `distance` contains the exact distance for the given doubles, whatever the outcome.
 /// Budget:    1,000,000 splits; 200 bytes each.
-/// Errors:    InputError: (value) for a precision that is negative or not finite; (unrepresentable) if a
-///            result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
-///            `solid` if a surface is not closed. Interrupted.
+/// Errors:    InputError: (value) for a precision that is negative or not finite; (unrepresentable) if a result does not fit a
+///            double; (refused) if no face of a mesh has a limit surface, and with `solid` if a surface is not closed. Interrupted.
 /// Cost:      about 170 microseconds at 0.1 % of the size (bench/results/bars.txt).
 [[nodiscard]] SNUG_API Distance distance(const PlacedSurface& a, const PlacedSurface& b,
                                          const DistanceOptions& options = {}, const Run& run = {});
@@ -66,10 +65,8 @@ struct ClosestPoint : LimitPoint {
 /// Is a point inside the solid that a closed limit surface bounds? The solid is the surface and all points
 /// that it winds around.
 ///
-/// Guarantee: the answer is right. It is empty if this cannot be decided: on the surface and within rounding
-///            of it.
-/// Errors:    InputError: (refused) for a surface that is not closed; (value) for a point that is not finite.
-///            Interrupted.
+/// Guarantee: the answer is right. It is empty if this cannot be decided: on the surface and within rounding of it.
+/// Errors:    InputError: (refused) for a surface that is not closed; (value) for a point that is not finite. Interrupted.
 /// Cost:      a walk along a ray, some microseconds; more for points close to the surface.
 /// Source:    derivations/contact.md.
 [[nodiscard]] SNUG_API std::optional<bool> contains(const Surface& surface, const Point3& point,
@@ -136,10 +133,9 @@ struct Deviation {
 ///
 /// Guarantee: each interval contains the exact distance for the given doubles, whatever the outcome.
 /// Budget:    50,000,000 parts compared in each direction; 100 bytes each at most, and 100 MB.
-/// Errors:    InputError: (value) without triangles, for a corner that is not finite, a negative
-///            threshold, or a precision that is not positive or below 2^-38 of the largest coordinate;
-///            (refused) if no face of the mesh has a limit surface, and with `solid` if it is not closed;
-///            (unrepresentable) if a result does not fit a double. Interrupted.
+/// Errors:    InputError: (value) without triangles, for a corner that is not finite, a negative threshold, or a precision that is
+///            not positive or below 2^-38 of the largest coordinate; (refused) if no face of the mesh has a limit surface, and with
+///            `solid` if it is not closed; (unrepresentable) if a result does not fit a double. Interrupted.
 /// Cost:      grows with triangles and patches, and with the square root of size over precision: see
 ///            bench/results/deviation.txt. 400 bytes a triangle.
 /// Source:    derivations/deviation.md.
