@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
+#include <oracle/self_twin.h>
 #include <oracle/tagged_shapes.h>
 #include <oracle/test_meshes.h>
 
@@ -36,6 +37,46 @@ TaggedMesh creased_cube(std::mt19937_64& random) {
   mesh.creases = {{0, 1, 1.75}, {1, 3, 10}, {3, 7, 2.5}, {4, 5, 10}, {2, 6, 0.375}};
   mesh.corners = {{6, 1.25}};
   return mesh;
+}
+
+// Two bent sheets, close to each other; the second one is tilted by so much. One that only comes near must not be said to cross.
+TEST(self_twin, sheets_cross_where_they_do_and_not_where_they_are_near) {
+  const auto crosses = [](PrimalScheme scheme, double apart, double tilt) {
+    TaggedMesh mesh;
+    for (const double up : {0.0, 1.0}) {
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      for (int y = -3; y <= 3; ++y) {
+        for (int x = -3; x <= 3; ++x) {
+          // Edges of one are not above those of the other.
+          const double u = x + 0.31 * up, v = y + 0.17 * up;
+          const double bent = 0.1 * (u * u - 0.5 * u * v + 0.3 * v * v);
+          mesh.points.push_back({u, v, bent + up * (apart + tilt * u)});
+        }
+      }
+      for (std::uint32_t y = 0; y < 6; ++y) {
+        for (std::uint32_t x = 0; x < 6; ++x) {
+          const std::uint32_t a = first + 7 * y + x;
+          if (scheme == PrimalScheme::loop) {
+            mesh.polygons.push_back({a, a + 1, a + 8});
+            mesh.polygons.push_back({a, a + 8, a + 7});
+          } else {
+            mesh.polygons.push_back({a, a + 1, a + 8, a + 7});
+          }
+        }
+      }
+    }
+    Rules rules;
+    rules.scheme = scheme;
+    const double height = scheme == PrimalScheme::loop ? 0.42 / 12 : 0.13 / 3;  // of the limit at the middle
+    return crosses_near(mesh, rules, {0, 0, height}, 1e-3);
+  };
+  for (const PrimalScheme scheme : {PrimalScheme::catmull_clark, PrimalScheme::loop}) {
+    EXPECT_TRUE(crosses(scheme, 1e-4, 0.3));
+    EXPECT_TRUE(crosses(scheme, 7e-7, 2e-3));
+    EXPECT_FALSE(crosses(scheme, 1e-3, 0));
+    EXPECT_FALSE(crosses(scheme, 1e-5, 0));
+    EXPECT_FALSE(crosses(scheme, 1e-7, 0));
+  }
 }
 
 TEST(polygon_twin, gives_the_same_limits_from_any_level) {
