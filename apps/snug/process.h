@@ -8,7 +8,7 @@
 /// later or at a second one, in end_interrupted().
 namespace snug::command::process {
 
-/// What follows the name of the program, as UTF-8.
+/// The arguments after the name of the program, as UTF-8.
 [[nodiscard]] std::vector<std::string> arguments(int argc, char** argv);
 /// Where the program lies; empty if the system does not say.
 [[nodiscard]] std::filesystem::path folder();
@@ -21,7 +21,7 @@ namespace snug::command::process {
 /// Descriptors 0 to 2 that are closed become ones that fail as closed ones do, so that no file is opened in
 /// their place and receives messages: to be called before any file is opened.
 void hold_standard_descriptors() noexcept;
-/// What the C library loads to unwind through itself (std::call_once), while there is memory.
+/// Loads, while there is memory, the library that the C library unwinds through itself with (std::call_once).
 void load_what_unwinds() noexcept;
 
 /// Its names are seen by libraries that are loaded later; null on failure.

@@ -115,7 +115,7 @@ SNUG_API void allow_pairs(Robot& robot, std::string_view bytes, const std::strin
 struct LinkContactsOptions {
   /// Shapes this close may be reported as within; `size`: the larger one of two meshes. Default: 0.1 % of it.
   std::function<double(double size)> tolerance{};
-  std::function<double(double size)> margin{};  ///< likewise; as in TimeOfContactOptions. Default: none
+  std::function<double(double size)> margin{};  ///< distance to be kept; `size` as above. Default: 0
   bool joined = false;                          ///< also pairs of links that a joint joins
   std::string group{};                          ///< only pairs with a link of this group
 };

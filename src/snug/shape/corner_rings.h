@@ -36,7 +36,7 @@ class RingValues {
   [[nodiscard]] const Sums& further(std::size_t level) const {
     return further_[level < count() ? level : count()];
   }
-  /// What the next `steps` levels add, where nothing grows. Requires that they are among count().
+  /// Bound of the sum of the next `steps` levels, where nothing grows. Requires that they are among count().
   [[nodiscard]] double next(std::size_t level, std::size_t steps) const;
 
  private:
