@@ -20,18 +20,20 @@ HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 
 /// Points, a lane a patch: three coordinates of each in a row.
-struct Lanes {
-  double* first;
+template <class T>
+struct LanesOf {
+  T* first;
   std::size_t lanes;
-  [[nodiscard]] double* at(std::size_t i, std::size_t axis) const { return first + (3 * i + axis) * lanes; }
+  [[nodiscard]] T* at(std::size_t i, std::size_t axis) const { return first + (3 * i + axis) * lanes; }
 };
+using Lanes = LanesOf<double>;
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> load(D d, const Lanes& points, std::size_t i) {
+HWY_INLINE Vec3<V> load(D d, const LanesOf<hn::TFromD<D>>& points, std::size_t i) {
   return {hn::Load(d, points.at(i, 0)), hn::Load(d, points.at(i, 1)), hn::Load(d, points.at(i, 2))};
 }
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void store(D d, const Vec3<V>& p, const Lanes& points, std::size_t i) {
+HWY_INLINE void store(D d, const Vec3<V>& p, const LanesOf<hn::TFromD<D>>& points, std::size_t i) {
   hn::Store(p.x, d, points.at(i, 0));
   hn::Store(p.y, d, points.at(i, 1));
   hn::Store(p.z, d, points.at(i, 2));
@@ -42,33 +44,54 @@ HWY_INLINE Vec3<V> zero3(D d) {
   return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
 }
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void add_scaled(D d, double weight, const Vec3<V>& p, Vec3<V>& sum) {
+HWY_INLINE void add_scaled(D d, hn::TFromD<D> weight, const Vec3<V>& p, Vec3<V>& sum) {
   sum = add(sum, scaled(hn::Set(d, weight), p));
 }
 
 /// A row times points, of which source i is number name(i).
-template <class D, class Name, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> product(D d, const Stencils& rows, std::size_t r, const Lanes& control, const Name& name) {
-  const Stencils::Row row = rows.row(r);
+template <class D, class Rows, class Name, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> product(D d, const Rows& rows, std::size_t r, const LanesOf<hn::TFromD<D>>& control,
+                           const Name& name) {
+  const auto row = rows.row(r);
   const auto source = [&](std::size_t i) HWY_ATTR {
-    const double* const at = control.first + 3 * hn::Lanes(d) * name(row.sources[i]);
+    const hn::TFromD<D>* const at = control.first + 3 * hn::Lanes(d) * name(row.sources[i]);
     return Vec3<V>{hn::Load(d, at), hn::Load(d, at + hn::Lanes(d)), hn::Load(d, at + 2 * hn::Lanes(d))};
   };
   Vec3<V> sum = scaled(hn::Set(d, row.weights[0]), source(0));
   for (std::size_t i = 1; i < row.sources.size(); ++i) add_scaled(d, row.weights[i], source(i), sum);
   return sum;
 }
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> product(D d, const Stencils& rows, std::size_t r, const Lanes& control) {
+template <class D, class Rows, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> product(D d, const Rows& rows, std::size_t r, const LanesOf<hn::TFromD<D>>& control) {
   return product(d, rows, r, control, [](std::uint32_t source) { return source; });
 }
 
-/// A block of doubles for vectors, as large as it ever was on this thread.
-inline double* aligned_memory(std::size_t count) {
-  thread_local std::vector<double> memory;
-  memory.resize(std::max(memory.size(), count + HWY_MAX_BYTES / sizeof(double)));
+/// Doubles to numbers of another type, rounded to nearest, and back: as many as a vector of doubles has.
+template <class D, class T, class V = hn::Vec<D>>
+HWY_INLINE void store_as(D d, V v, T* to) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    hn::Store(v, d, to);
+  } else {
+    const hn::Rebind<T, D> other;
+    hn::Store(hn::DemoteTo(other, v), other, to);
+  }
+}
+template <class D, class T, class V = hn::Vec<D>>
+HWY_INLINE V load_as(D d, const T* from) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    return hn::Load(d, from);
+  } else {
+    return hn::PromoteTo(d, hn::Load(hn::Rebind<T, D>(), from));
+  }
+}
+
+/// A block of numbers for vectors, as large as it ever was on this thread.
+template <class T = double>
+T* aligned_memory(std::size_t count) {
+  thread_local std::vector<T> memory;
+  memory.resize(std::max(memory.size(), count + HWY_MAX_BYTES / sizeof(T)));
   const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory.data());
-  return memory.data() + (HWY_MAX_BYTES - address % HWY_MAX_BYTES) % HWY_MAX_BYTES / sizeof(double);
+  return memory.data() + (HWY_MAX_BYTES - address % HWY_MAX_BYTES) % HWY_MAX_BYTES / sizeof(T);
 }
 
 /// Control points [from, to) of the next `lanes` patches, for vectors with a patch a lane: coordinate a of

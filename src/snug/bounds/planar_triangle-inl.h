@@ -36,6 +36,20 @@ struct PlanarTriangle {
   V stretch;    // of lengths by the frame, at most
 };
 
+// Of l0, xc, yc.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void find_edges(D d, PlanarTriangle<V>& t) {
+  const V one = hn::Set(d, hn::TFromD<D>(1)), bx = hn::Sub(t.xc, t.l0);
+  t.l1 = hn::Sqrt(hypotenuse_sq(bx, t.yc));
+  t.l2 = hn::Sqrt(hypotenuse_sq(t.xc, t.yc));
+  const V over_l1 = hn::Div(one, t.l1), over_l2 = hn::Div(one, t.l2);
+  t.d1x = hn::Mul(bx, over_l1);
+  t.d1y = hn::Mul(t.yc, over_l1);
+  t.d2x = hn::Mul(t.xc, over_l2);
+  t.d2y = hn::Mul(t.yc, over_l2);
+  t.longest = max3(t.l0, t.l1, t.l2);
+}
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& c) {
   PlanarTriangle<V> t;
@@ -47,21 +61,14 @@ HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V
   t.t1 = scaled(hn::Div(one, hn::Sqrt(dot(eb, eb))), eb);
   t.t2 = cross(t.n, t.t1);
   t.l0 = dot(t.t1, eb);
-  const V xc = t.xc = dot(t.t1, ec), yc = t.yc = dot(t.t2, ec);
-  const V bx = hn::Sub(xc, t.l0);
-  t.l1 = hn::Sqrt(hypotenuse_sq(bx, yc));
-  t.l2 = hn::Sqrt(hypotenuse_sq(xc, yc));
-  const V over_l1 = hn::Div(one, t.l1), over_l2 = hn::Div(one, t.l2);
-  t.d1x = hn::Mul(bx, over_l1);
-  t.d1y = hn::Mul(yc, over_l1);
-  t.d2x = hn::Mul(xc, over_l2);
-  t.d2y = hn::Mul(yc, over_l2);
-  t.longest = max3(t.l0, t.l1, t.l2);
+  t.xc = dot(t.t1, ec);
+  t.yc = dot(t.t2, ec);
+  find_edges(d, t);
   const V off_b = hn::Add(hn::Abs(dot(t.t2, eb)), hn::Abs(dot(t.n, eb)));
   t.deviation =
       hn::Add(hn::Max(off_b, hn::Abs(dot(t.n, ec))), hn::Mul(hn::Set(d, 16 * unit_roundoff), t.longest));
   const V products = max3(hn::Mul(t.l0, t.l1), hn::Mul(t.l1, t.l2), hn::Mul(t.l2, t.l0));
-  t.amplify = hn::Div(hn::Add(products, products), hn::Mul(t.l0, yc));
+  t.amplify = hn::Div(hn::Add(products, products), hn::Mul(t.l0, t.yc));
   const V diagonal = max3(hn::Abs(hn::Sub(dot(t.t1, t.t1), one)), hn::Abs(hn::Sub(dot(t.t2, t.t2), one)),
                           hn::Abs(hn::Sub(dot(t.n, t.n), one)));
   const V mixed =
@@ -124,6 +131,23 @@ HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
   if (hn::AllFalse(d, outside)) return f.height_sq;
   const V nearest = hn::Min(aside_sq<0>(d, t, f), hn::Min(aside_sq<1>(d, t, f), aside_sq<2>(d, t, f)));
   return hn::Add(f.height_sq, hn::IfThenElseZero(outside, nearest));
+}
+
+// The square of what the distance is at most, but for the height's own error, if place and edges are off by `margin` at most. By the edge
+// that the foot is farthest outside of: any edge is right, this one nearest but for feet beyond obtuse corners.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V most_distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f, V margin) {
+  const V zero = hn::Zero(d), within = hn::Sub(zero, margin);
+  const V across = hn::Max(f.s1, f.s2), farthest = hn::Max(f.s0, across);
+  const auto outside = hn::Gt(farthest, within);
+  if (hn::AllFalse(d, outside)) return f.height_sq;
+  const V along_one = hn::Add(hn::Mul(hn::Sub(f.x, t.l0), t.d1x), hn::Mul(f.y, t.d1y)),
+          along_two = hn::Add(hn::Mul(f.x, t.d2x), hn::Mul(f.y, t.d2y));
+  const auto one = hn::Gt(f.s1, f.s2), first = hn::Gt(f.s0, across);
+  const V along = hn::IfThenElse(first, f.x, hn::IfThenElse(one, along_one, along_two)),
+          length = hn::IfThenElse(first, t.l0, hn::IfThenElse(one, t.l1, t.l2));
+  const V beyond = hn::Add(max3(hn::Sub(along, length), hn::Sub(zero, along), within), margin);
+  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, hypotenuse_sq(hn::Add(farthest, margin), beyond)));
 }
 
 // The same sooner for points that are rarely outside of other edges than one.

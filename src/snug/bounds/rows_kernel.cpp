@@ -10,7 +10,9 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include <snug/bounds/rows_kernel.h>
@@ -24,141 +26,205 @@ namespace {
 // How much tips may add to the radius of the rest, and to its height.
 constexpr double max_excess = 0.15;
 
-// Boxes of a tip in the frame, [axis][corner of the table], with all errors.
+// each(r, product) for the rows, of `points`; two at once.
+template <class D, class Each, class V = hn::Vec<D>, class T = hn::TFromD<D>>
+HWY_INLINE void each_product(D d, const SparseRows<T>& rows, const LanesOf<T>& points, const Each& each) {
+  const std::uint32_t* place = rows.places.data();
+  const std::uint32_t* source = rows.sources.data();
+  const T* weight = rows.weights.data();
+  const std::size_t stride = hn::Lanes(d);
+  const auto point = [&](std::uint32_t i) HWY_ATTR {
+    const T* const at = points.first + 3 * stride * i;
+    return Vec3<V>{hn::Load(d, at), hn::Load(d, at + stride), hn::Load(d, at + 2 * stride)};
+  };
+  for (const auto& [count, length] : rows.runs) {
+    std::size_t r = 0;
+    for (; r + 2 <= count; r += 2) {
+      Vec3<V> one = scaled(hn::Set(d, weight[0]), point(source[0])),
+              two = scaled(hn::Set(d, weight[length]), point(source[length]));
+      for (std::size_t i = 1; i < length; ++i) {
+        add_scaled(d, weight[i], point(source[i]), one);
+        add_scaled(d, weight[length + i], point(source[length + i]), two);
+      }
+      each(place[0], one);
+      each(place[1], two);
+      place += 2;
+      weight += 2 * length;
+      source += 2 * length;
+    }
+    if (r == count) continue;
+    Vec3<V> sum = scaled(hn::Set(d, weight[0]), point(source[0]));
+    for (std::size_t i = 1; i < length; ++i) add_scaled(d, weight[i], point(source[i]), sum);
+    each(*place++, sum);
+    weight += length;
+    source += length;
+  }
+}
+
+// What a vector of T is in doubles: one of them, or two.
+template <class D>
+constexpr std::size_t most_parts = sizeof(double) / sizeof(hn::TFromD<D>);
+
+// Boxes of a tip in the frame, [axis][corner of the table], with all errors, and what these are by axes.
 template <class V>
 struct TipBoxes {
-  V middle[3][3], half[3][3];
+  V middle[3][3], half[3][3], error[3];
 };
 
 // A control net among the points of a step.
+template <class T>
 struct NetLanes {
-  Lanes points;
+  LanesOf<T> points;
   std::span<const std::uint32_t> control;
-  [[nodiscard]] const double* at(std::size_t i, std::size_t axis) const {
-    return points.at(control[i], axis);
-  }
+  [[nodiscard]] const T* at(std::size_t i, std::size_t axis) const { return points.at(control[i], axis); }
 };
 
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE TipBoxes<V> boxes_of(D d, const FlatTable& table, const NetLanes& net, V net_error) {
+template <class D>
+HWY_INLINE hn::Vec<D> number(D d, double x) {
+  return hn::Set(d, static_cast<hn::TFromD<D>>(x));
+}
+// Above, whatever its rounding: of bounds that are not near the ends of the range.
+template <class D>
+HWY_INLINE hn::Vec<D> above(D d, double x) {
+  return number(d, x * (1 + 8 * roundoff_of<hn::TFromD<D>>));
+}
+
+// `net_error`: of its points, by axes.
+template <class D, class V = hn::Vec<D>, class T = hn::TFromD<D>>
+HWY_INLINE TipBoxes<V> boxes_of(D d, const FlatTable<T>& table, const NetLanes<T>& net,
+                                const V (&net_error)[3]) {
   const std::size_t count = net.control.size();
   LinearV<V> linear[3];
   begin_linear(d, table, net, linear);
   if (table.first == 0) add_to_linear(d, table, net, 0, count, linear);
+  TableSumsV<V> sums[3];
+  begin_boxes(d, linear, sums);
+  add_to_boxes(d, table, net, 0, count, linear, sums);
+  end_boxes(d, table, linear, sums);
   TipBoxes<V> boxes;
-  V largest;
-  begin_boxes(d, table, linear, boxes.middle, boxes.half, largest);
-  add_to_boxes(d, table, net, 0, count, linear, boxes.middle, boxes.half, largest);
-  const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, table.error_of_largest), largest),
-                                  hn::Mul(hn::Set(d, table.gain), net_error)),
-                          hn::Set(d, table.error_at_least));
   for (std::size_t a = 0; a < 3; ++a) {
+    const V own = hn::Add(hn::Mul(above(d, table.error_of_largest), sums[a].largest),
+                          hn::Mul(above(d, table.error_of_offset), sums[a].off));
+    const V error = boxes.error[a] =
+        hn::Add(hn::Add(own, hn::Mul(above(d, table.gain), net_error[a])), above(d, table.error_at_least));
     for (std::size_t k = 0; k < 3; ++k) {
-      boxes.middle[a][k] = hn::Add(linear[a].origin, boxes.middle[a][k]);
-      const V half = hn::Add(boxes.half[a][k], error);
+      boxes.middle[a][k] = hn::Add(linear[a].origin, sums[a].middle[k]);
+      const V half = hn::Add(sums[a].half[k], error);
       const V size = hn::Add(hn::Abs(boxes.middle[a][k]), half);
-      boxes.half[a][k] = hn::Add(half, hn::Mul(hn::Set(d, 8 * unit_roundoff), size));
+      boxes.half[a][k] = hn::Add(half, hn::Mul(number(d, 16 * roundoff_of<T>), size));
     }
   }
   return boxes;
 }
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V farthest_of(D d, const PlanarTriangle<V>& t, const TipBoxes<V>& boxes, V middle) {
+HWY_INLINE V farthest_of(D d, const PlanarTriangle<V>& t, const TipBoxes<V>& boxes, V middle, V margin) {
   V farthest = hn::Zero(d);
   for (std::size_t k = 0; k < 3; ++k) {
     const V height = hn::Add(hn::Abs(hn::Sub(boxes.middle[2][k], middle)), boxes.half[2][k]);
     for (const double side_x : {-1.0, 1.0}) {
       for (const double side_y : {-1.0, 1.0}) {
-        const V x = hn::Add(boxes.middle[0][k], hn::Mul(hn::Set(d, side_x), boxes.half[0][k]));
-        const V y = hn::Add(boxes.middle[1][k], hn::Mul(hn::Set(d, side_y), boxes.half[1][k]));
-        farthest = hn::Max(farthest, distance_sq(d, t, foot_of(d, t, x, y, height)));
+        const V x = hn::Add(boxes.middle[0][k], hn::Mul(number(d, side_x), boxes.half[0][k]));
+        const V y = hn::Add(boxes.middle[1][k], hn::Mul(number(d, side_y), boxes.half[1][k]));
+        farthest = hn::Max(farthest, most_distance_sq(d, t, foot_of(d, t, x, y, height), margin));
       }
     }
   }
   return farthest;
 }
 
-// Control points relative to the first, then in the frame. The largest |coordinate| relative to the first
-// corner; not a number where a point is not finite.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V into_frame(D d, const PlanarTriangle<V>& t, const Lanes& control, std::size_t count) {
+// Control points relative to the first, then in the frame, as numbers of `to`. The largest |coordinate| relative to the
+// first corner; not a number where a point is not finite.
+template <class D, class T, class V = hn::Vec<D>>
+HWY_INLINE V into_frame(D d, const PlanarTriangle<V>& t, const Lanes& control, std::size_t count,
+                        const LanesOf<T>& to) {
   V largest = hn::Zero(d), probe = hn::Zero(d);
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3<V> r = sub(load(d, control, k), t.a);
     largest = hn::Max(largest, max3(hn::Abs(r.x), hn::Abs(r.y), hn::Abs(r.z)));
     probe = hn::Add(probe, hn::Add(hn::Sub(r.x, r.x), hn::Add(hn::Sub(r.y, r.y), hn::Sub(r.z, r.z))));
-    store(d, Vec3<V>{dot(t.t1, r), dot(t.t2, r), dot(t.n, r)}, control, k);
+    store_as(d, dot(t.t1, r), to.at(k, 0));
+    store_as(d, dot(t.t2, r), to.at(k, 1));
+    store_as(d, dot(t.n, r), to.at(k, 2));
   }
   return hn::Add(largest, probe);
 }
 
 // Points of patches as they come to be, level by level.
+template <class T>
 struct Memory {
-  Lanes control, patch, tip[2], middle, bezier;
-  Memory(double* at, std::size_t lanes, const RowsWithTips& rows) {
-    for (Lanes* const part : {&control, &patch, &tip[0], &tip[1], &middle, &bezier}) {
+  LanesOf<T> control, patch, tip[2], middle, bezier;
+  Memory(T* at, std::size_t lanes, const RowsWithTips<T>& rows) {
+    for (LanesOf<T>* const part : {&control, &patch, &tip[0], &tip[1], &middle, &bezier}) {
       *part = {at, lanes};
       at += 3 * lanes * (part == &control ? rows.kind().control_count() : rows.most_points());
     }
   }
-  [[nodiscard]] static std::size_t size(const RowsWithTips& rows, unsigned levels) {
+  [[nodiscard]] static std::size_t size(const RowsWithTips<T>& rows, unsigned levels) {
     return 3 * (rows.kind().control_count() + 4 * rows.most_points() + rows.bezier_count(levels));
   }
 };
 
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, unsigned levels, const Memory& memory,
-                          std::span<OffsetTriangle> out) {
-  const Lanes& control = memory.control;
-  const std::size_t count = rows.kind().control_count();
-  const V zero = hn::Zero(d), infinite = hn::Set(d, INFINITY);
-  const Vec3<V> origin = load(d, control, 0);
-  for (std::size_t k = 0; k < count; ++k) store(d, sub(load(d, control, k), origin), control, k);
-  Vec3<V> corner[3];
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = product(d, rows.kind().corner_limits(), k, control);
-  const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
-  const V largest = into_frame(d, t, control, count);
-  const V point_error = hn::Mul(hn::Set(d, rows.error_of_largest()), largest);
+// Patches in doubles, before they are bounded: relative to their first control points.
+template <class V>
+struct PlacedV {
+  Vec3<V> origin, corner[3];
+  PlanarTriangle<V> triangle;
+  V largest;
+};
+
+// What bounds them in their frames, from their control points there: the middle of their heights, the square of what no point of
+// theirs is farther from the base by, but for `height_error`; and whether tips stick out too far. Doubts: how much of it may be
+// errors of heights, and of places.
+template <class V, class M>
+struct BoundedV {
+  V middle, farthest_sq, height_error, height_doubt, place_doubt;
+  M good;
+};
+
+template <class D, class V = hn::Vec<D>, class T = hn::TFromD<D>>
+HWY_INLINE BoundedV<V, hn::Mask<D>> bound(D d, const RowsWithTips<T>& rows, unsigned levels,
+                                          const Memory<T>& memory, const PlanarTriangle<V>& t, V largest) {
+  const LanesOf<T>& control = memory.control;
+  const V zero = hn::Zero(d), infinite = number(d, INFINITY);
+  V point_error[3];
+  for (std::size_t a = 0; a < 3; ++a) {
+    V size = zero;
+    for (std::size_t k = 0; k < rows.kind().control_count(); ++k) {
+      size = hn::Max(size, hn::Abs(hn::Load(d, control.at(k, a))));
+    }
+    point_error[a] = hn::Add(hn::Mul(above(d, rows.error_of_points() * 3 * gamma_bound(16)), largest),
+                             hn::Mul(above(d, rows.error_of_largest()), size));
+  }
+  const V margin =
+      hn::Add(hn::Add(point_error[0], point_error[1]), hn::Mul(number(d, 24 * roundoff_of<T>), t.longest));
 
   std::size_t bezier = 0;
   V lower = infinite, upper = hn::Sub(zero, infinite);
-  const auto add_level = [&](const LevelStep& step, std::size_t bezier_rows, const Lanes& points) HWY_ATTR {
-    for (std::size_t r = 0; r < bezier_rows; ++r, ++bezier) {
-      const Vec3<V> p = product(d, step.bezier, r, points);
-      store(d, p, memory.bezier, bezier);
+  // A step of points that comes to `next`.
+  const auto add_step = [&](const typename RowsWithTips<T>::Step& step, const LanesOf<T>& from,
+                            const LanesOf<T>& next) HWY_ATTR {
+    each_product(d, step.points, from,
+                 [&](std::size_t r, const Vec3<V>& p) HWY_ATTR { store(d, p, next, r); });
+    each_product(d, step.bezier, next, [&](std::size_t, const Vec3<V>& p) HWY_ATTR {
+      store(d, p, memory.bezier, bezier++);
       lower = hn::Min(lower, p.z);
       upper = hn::Max(upper, p.z);
-    }
+    });
   };
-  const auto add_middle = [&](const RowsWithTips::Level& level, const Lanes& points) HWY_ATTR {
-    if (level.middle == nullptr) return;
-    const auto name = [&](std::uint32_t source) { return level.middle_control[source]; };
-    for (std::size_t r = 0; r < level.middle->points.row_count(); ++r) {
-      store(d, product(d, level.middle->points, r, points, name), memory.middle, r);
-    }
-    add_level(*level.middle, level.middle->bezier.row_count(), memory.middle);
+  const auto add_level = [&](const typename RowsWithTips<T>::Level& level, const LanesOf<T>& from,
+                             const LanesOf<T>& next) HWY_ATTR {
+    add_step(*level.step, from, next);
+    if (level.middle != nullptr) add_step(*level.middle, next, memory.middle);
   };
-  const LevelStep& first = *rows.first().step;
-  for (std::size_t r = 0; r < first.points.row_count(); ++r) {
-    store(d, product(d, first.points, r, control), memory.patch, r);
-  }
-  add_level(first, first.bezier.row_count(), memory.patch);
-  add_middle(rows.first(), memory.patch);
-  TipBoxes<V> boxes[RowsWithTips::most_tips];
+  add_level(rows.first(), control, memory.patch);
+  TipBoxes<V> boxes[most_tips];
   for (std::size_t i = 0; i < rows.tips().size(); ++i) {
-    const RowsWithTips::Tip& tip = rows.tips()[i];
-    NetLanes net{memory.patch, tip.control};
+    const typename RowsWithTips<T>::Tip& tip = rows.tips()[i];
+    NetLanes<T> net{memory.patch, tip.control};
     for (unsigned level = 1; level < levels; ++level) {
-      const LevelStep& step = *tip.levels[level].step;
-      const Lanes& next = memory.tip[level % 2];
-      const auto name = [&](std::uint32_t source) { return net.control[source]; };
-      for (std::size_t r = 0; r < step.points.row_count(); ++r) {
-        store(d, product(d, step.points, r, net.points, name), next, r);
-      }
-      // The piece beyond is the middle one of the step before.
-      add_level(step, step.inner, next);
-      add_middle(tip.levels[level], next);
+      const LanesOf<T>& next = memory.tip[level % 2];
+      add_level(tip.levels[level], net.points, next);
       net = {next, tip.levels[level].tip_control};
     }
     boxes[i] = boxes_of(d, tip.table, net, point_error);
@@ -170,48 +236,163 @@ HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, unsigned levels, const 
       upper = hn::Max(upper, hn::Add(boxes[i].middle[2][k], boxes[i].half[2][k]));
     }
   }
+  BoundedV<V, hn::Mask<D>> result;
   // No -0: which of two zeros is the least depends on their order.
-  const V middle = hn::Mul(hn::Set(d, 0.5), hn::Add(hn::Add(lower, upper), zero));
+  result.middle = hn::Mul(number(d, 0.5), hn::Add(hn::Add(lower, upper), zero));
 
   V rest = zero, tips = zero;
   for (std::size_t r = 0; r < bezier; ++r) {
     const Vec3<V> p = load(d, memory.bezier, r);
-    rest = hn::Max(rest, distance_sq(d, t, foot_of(d, t, p.x, p.y, hn::Sub(p.z, middle))));
+    const V height = hn::Sub(p.z, result.middle);
+    rest = hn::Max(rest, most_distance_sq(d, t, foot_of(d, t, p.x, p.y, height), margin));
   }
   for (std::size_t i = 0; i < rows.tips().size(); ++i) {
-    tips = hn::Max(tips, farthest_of(d, t, boxes[i], middle));
+    tips = hn::Max(tips, farthest_of(d, t, boxes[i], result.middle, margin));
   }
-  auto good = hn::And(well_shaped(d, t), hn::Lt(largest, infinite));
-  good = hn::And(good, hn::Le(tips, hn::Mul(hn::Set(d, (1 + max_excess) * (1 + max_excess)), rest)));
+  result.good = hn::Le(tips, hn::Mul(number(d, (1 + max_excess) * (1 + max_excess)), rest));
   const V sticks_out = hn::Max(hn::Sub(low, lower), hn::Sub(upper, high));
-  good = hn::And(good, hn::Le(sticks_out, hn::Mul(hn::Set(d, max_excess), hn::Sub(high, low))));
-
-  const ReachV<V> reach = reach_of(d, t, hn::Max(rest, tips), hn::Mul(t.stretch, hn::Abs(middle)));
-  const Vec3<V> shift = scaled(middle, t.n);
-  V placed = zero;
-  for (std::size_t k = 0; k < 3; ++k) {
-    corner[k] = add(origin, add(corner[k], shift));
-    placed = hn::Max(placed, max3(hn::Abs(corner[k].x), hn::Abs(corner[k].y), hn::Abs(corner[k].z)));
+  result.good = hn::And(result.good, hn::Le(sticks_out, hn::Mul(number(d, max_excess), hn::Sub(high, low))));
+  result.farthest_sq = hn::Max(rest, tips);
+  result.height_error = result.height_doubt = point_error[2];
+  result.place_doubt = margin;
+  const auto by_tips = hn::Gt(tips, rest);
+  for (std::size_t i = 0; i < rows.tips().size(); ++i) {
+    const V(&error)[3] = boxes[i].error;
+    result.height_doubt = hn::Max(result.height_doubt, hn::Add(point_error[2], error[2]));
+    result.place_doubt = hn::Max(result.place_doubt,
+                                 hn::IfThenElseZero(by_tips, hn::Add(margin, hn::Add(error[0], error[1]))));
   }
-  const V place_error =
-      hn::Add(hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed), hn::Set(d, 4096 * underflow_error));
-  const V given = hn::Mul(hn::Set(d, spatial_error(1)), hn::Add(point_error, place_error));
-  const V radius = hn::Add(reach.distance, given);
-  const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
-  good = hn::And(good, hn::Lt(widened, infinite));
-  hand_out(d, corner, hn::IfThenElse(good, widened, hn::Set(d, -1.0)), hn::Add(reach.rounding, given), out);
+  return result;
 }
 
-void FitRows(const RowsWithTips& rows, unsigned levels, std::span<const Point3> points,
-             const VertexId* control, std::span<OffsetTriangle> out) {
-  const hn::ScalableTag<double> d;
-  const std::size_t lanes = hn::Lanes(d), count = rows.kind().control_count();
-  const Memory memory(aligned_memory(lanes * Memory::size(rows, levels)), lanes, rows);
-  for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
-    const std::size_t here = std::min(lanes, out.size() - begin);
-    gather_lanes(points, control + count * begin, count, 0, count, here, lanes, memory.control.first);
-    fit_lanes(d, rows, levels, memory, out.subspan(begin, here));
+// `T`: what it was bounded in. Names of errors as in derivations/rounding.md, "Batches".
+template <class T, class D, class V = hn::Vec<D>>
+HWY_INLINE void finish(D d, PlacedV<V>& placed, const BoundedV<V, hn::Mask<D>>& bounded,
+                       std::span<OffsetTriangle> out) {
+  const PlanarTriangle<V>& t = placed.triangle;
+  const V one = hn::Set(d, 1.0), infinite = hn::Set(d, INFINITY);
+  const V far = hn::Add(hn::Mul(hn::Set(d, 1 + 32 * roundoff_of<T>),
+                                hn::Sqrt(hn::Add(bounded.farthest_sq, hn::Set(d, 8 * underflow_of<T>)))),
+                        bounded.height_error);
+  const V moved = hn::Add(t.deviation, hn::Mul(t.stretch, hn::Abs(bounded.middle)));
+  const Vec3<V> shift = scaled(bounded.middle, t.n);
+  V largest = hn::Zero(d);
+  for (Vec3<V>& corner : placed.corner) {
+    corner = add(placed.origin, add(corner, shift));
+    largest = hn::Max(largest, max3(hn::Abs(corner.x), hn::Abs(corner.y), hn::Abs(corner.z)));
   }
+  const V place_error = hn::Add(hn::Add(hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), largest),
+                                        hn::Mul(hn::Set(d, gamma_bound(16)), placed.largest)),
+                                hn::Set(d, 4096 * underflow_error));
+  const V given = hn::Mul(hn::Set(d, spatial_error(1)), place_error);
+  const V radius = hn::Add(hn::Mul(hn::Add(far, moved), hn::Add(one, t.stretch)), given);
+  const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
+  const V rounding =
+      hn::Add(hn::Add(hn::Add(moved, given), hn::Add(bounded.height_doubt, bounded.place_doubt)),
+              hn::Mul(hn::Set(d, 32 * roundoff_of<T>), far));
+  auto good = hn::And(well_shaped(d, t), hn::Lt(placed.largest, infinite));
+  good = hn::And(good, hn::And(bounded.good, hn::Lt(widened, infinite)));
+  V none = hn::Set(d, -1.0);
+  if constexpr (sizeof(T) < sizeof(double)) {
+    // Places that are off add to radii in square, where points are beside the triangle.
+    auto exact = hn::And(hn::Le(hn::Mul(hn::Set(d, 128.0), bounded.height_doubt), far),
+                         hn::Le(hn::Mul(hn::Set(d, 32.0), bounded.place_doubt), far));
+    exact = hn::And(exact, hn::And(hn::Ge(t.longest, hn::Set(d, 0x1p-40)), hn::Lt(far, infinite)));
+    none = hn::IfThenElse(exact, none, hn::Set(d, needs_digits));
+    good = hn::And(good, exact);
+  }
+  hand_out(d, placed.corner, hn::IfThenElse(good, widened, none), rounding, out);
+}
+
+// `control`: room for the control points of a vector of doubles.
+template <class B, class T = hn::TFromD<B>>
+HWY_INLINE void fit_lanes(B of_bounds, const RowsWithTips<T>& rows, unsigned levels,
+                          std::span<const Point3> points, const VertexId* control, const Memory<T>& memory,
+                          double* gathered, std::span<OffsetTriangle> out) {
+  const hn::ScalableTag<double> d;
+  using V = hn::Vec<decltype(d)>;
+  const std::size_t some = hn::Lanes(d), all = hn::Lanes(of_bounds), count = rows.kind().control_count();
+  PlacedV<V> placed[most_parts<decltype(of_bounds)>];
+  HWY_ALIGN T lane[6][HWY_MAX_BYTES / sizeof(T)];
+  for (std::size_t l = 0; l < all; l += some) {
+    const std::size_t begin = std::min(l, out.size() - 1);
+    gather_lanes(points, control + count * begin, count, 0, count, std::min(some, out.size() - begin), some,
+                 gathered);
+    const Lanes here{gathered, some};
+    PlacedV<V>& patches = placed[l / some];
+    patches.origin = load(d, here, 0);
+    for (std::size_t k = 0; k < count; ++k) store(d, sub(load(d, here, k), patches.origin), here, k);
+    for (std::size_t k = 0; k < 3; ++k) {
+      patches.corner[k] = product(d, rows.kind().corner_limits(), k, here);
+    }
+    const PlanarTriangle<V> t = planar_triangle(d, patches.corner[0], patches.corner[1], patches.corner[2]);
+    patches.largest = into_frame(d, t, here, count, LanesOf<T>{memory.control.first + l, all});
+    patches.triangle = t;
+    const V numbers[] = {t.l0, t.xc, t.yc, patches.largest};
+    for (std::size_t i = 0; i < 4; ++i) store_as(d, numbers[i], lane[i] + l);
+  }
+  PlanarTriangle<hn::Vec<decltype(of_bounds)>> t;
+  t.l0 = hn::Load(of_bounds, lane[0]);
+  t.xc = hn::Load(of_bounds, lane[1]);
+  t.yc = hn::Load(of_bounds, lane[2]);
+  find_edges(of_bounds, t);
+  const auto bounded = bound(of_bounds, rows, levels, memory, t, hn::Load(of_bounds, lane[3]));
+  hn::Store(bounded.middle, of_bounds, lane[0]);
+  hn::Store(bounded.farthest_sq, of_bounds, lane[1]);
+  hn::Store(bounded.height_error, of_bounds, lane[2]);
+  hn::Store(bounded.height_doubt, of_bounds, lane[3]);
+  hn::Store(bounded.place_doubt, of_bounds, lane[4]);
+  hn::Store(hn::IfThenElseZero(bounded.good, number(of_bounds, 1)), of_bounds, lane[5]);
+  for (std::size_t l = 0; l < std::min(all, out.size()); l += some) {
+    const auto of = [&](std::size_t i) HWY_ATTR { return load_as(d, lane[i] + l); };
+    const BoundedV<V, hn::Mask<decltype(d)>> part{of(0), of(1), of(2),
+                                                  of(3), of(4), hn::Gt(of(5), hn::Zero(d))};
+    finish<T>(d, placed[l / some], part, out.subspan(l, std::min(some, out.size() - l)));
+  }
+}
+
+template <class T>
+HWY_INLINE void fit_all(const RowsWithTips<T>& rows, unsigned levels, std::span<const Point3> points,
+                        const VertexId* control, std::span<OffsetTriangle> out) {
+  const hn::ScalableTag<double> d;
+  const std::size_t lanes = hn::Lanes(hn::ScalableTag<T>()), count = rows.kind().control_count();
+  const std::size_t memory_size = lanes * Memory<T>::size(rows, levels);
+  // Of doubles together.
+  double* const gathered =
+      aligned_memory(3 * count * hn::Lanes(d) + (sizeof(T) == sizeof(double) ? memory_size : 0));
+  T* at;
+  if constexpr (sizeof(T) == sizeof(double)) {
+    at = gathered + 3 * count * hn::Lanes(d);
+  } else {
+    at = aligned_memory<T>(memory_size);
+  }
+  const auto fit = [&](auto of_bounds, std::size_t begin) HWY_ATTR {
+    const std::size_t here = std::min(hn::Lanes(of_bounds), out.size() - begin);
+    fit_lanes(of_bounds, rows, levels, points, control + count * begin,
+              Memory<T>(at, hn::Lanes(of_bounds), rows), gathered, out.subspan(begin, here));
+    return begin + here;
+  };
+  for (std::size_t begin = 0; begin < out.size();) {
+    // Half a vector costs less where there are 512 bits.
+    constexpr std::size_t half = 64 / sizeof(T) / 2;
+    if constexpr (sizeof(T) < sizeof(double) && hn::MaxLanes(hn::ScalableTag<T>()) == 2 * half) {
+      if (out.size() - begin <= half) {
+        begin = fit(hn::CappedTag<T, half>(), begin);
+        continue;
+      }
+    }
+    begin = fit(hn::ScalableTag<T>(), begin);
+  }
+}
+
+SNUG_FLAT void FitRows(const RowsWithTips<double>& rows, unsigned levels, std::span<const Point3> points,
+                       const VertexId* control, std::span<OffsetTriangle> out) {
+  fit_all<double>(rows, levels, points, control, out);
+}
+SNUG_FLAT void FitRowsInSingle(const RowsWithTips<float>& rows, unsigned levels,
+                               std::span<const Point3> points, const VertexId* control,
+                               std::span<OffsetTriangle> out) {
+  fit_all<float>(rows, levels, points, control, out);
 }
 
 }  // namespace
@@ -222,6 +403,7 @@ HWY_AFTER_NAMESPACE();
 namespace snug::kernels {
 
 HWY_EXPORT(FitRows);
+HWY_EXPORT(FitRowsInSingle);
 
 namespace {
 
@@ -243,82 +425,135 @@ std::optional<Nets> nets_of(BoundsCache& library, const std::vector<LevelStep::N
   return result;
 }
 
-// each(level, kind) from a net at a corner on, as long as the only tip is at that corner.
+// each(level, kind, net it comes from) from a net at a corner on, as long as the only tip is at that corner.
 template <class Each>
-bool follow(BoundsCache& library, const LevelStep::Net& net, const Each& each) {
-  const Kind* kind = net.kind;
-  std::size_t corner = net.own;
-  for (unsigned level = 1; level < RowsWithTips::most_levels; ++level) {
-    const std::vector<LevelStep::Net> own = library.level_step(*kind).nets;
+bool follow(BoundsCache& library, const LevelStep::Net& first, const Each& each) {
+  LevelStep::Net net = first;
+  for (unsigned level = 1; level < most_row_levels; ++level) {
+    const std::vector<LevelStep::Net> own = library.level_step(*net.kind).nets;
     const std::optional<Nets> nets = nets_of(library, own);
-    if (!nets || nets->tips.size() != 1 || nets->tips.front()->corner != corner) return false;
-    each(level, *kind);
-    kind = nets->tips.front()->kind;
-    corner = nets->tips.front()->own;
+    if (!nets || nets->tips.size() != 1 || nets->tips.front()->corner != net.own) return false;
+    each(level, net);
+    net = *nets->tips.front();
   }
   return true;
 }
 
 }  // namespace
 
-bool RowsWithTips::fit(BoundsCache& library, const Kind& kind) {
+bool has_rows_with_tips(BoundsCache& library, const Kind& kind) {
   if (!kind.cacheable() || kind.polynomial() || !has_self_similar_tips(kind)) return false;
   const std::vector<LevelStep::Net> own = library.level_step(kind).nets;
   const std::optional<Nets> nets = nets_of(library, own);
   return nets && std::all_of(nets->tips.begin(), nets->tips.end(), [&](const LevelStep::Net* net) {
-           return follow(library, *net, [](unsigned, const Kind&) {});
+           return follow(library, *net, [](unsigned, const LevelStep::Net&) {});
          });
 }
 
-// Errors in units of the largest coordinate: derivations/rounding.md, "Batches".
-RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind) {
-  std::map<const Kind*, const LevelStep*> known;
-  const auto keep = [&](const Kind& of) {
-    const LevelStep*& own = known[&of];
-    if (!own) own = steps_.emplace_back(std::make_unique<const LevelStep>(library.level_step(of))).get();
-    most_points_ = std::max(most_points_, own->points.row_count());
-    return own;
-  };
-  const auto pass_on = [&](const LevelStep& step, double& size, double& error) {
-    error = step.points.result_error(size, error);
-    size *= std::max(1.0, step.points.max_abs_sum());
-    error_of_largest_ = std::max(error_of_largest_, step.bezier.result_error(size, error));
-  };
-  // A level of a kind, whose points are of this size and off by this error afterwards.
-  const auto level_of = [&](const Kind& of, double& size, double& error) {
-    Level level{keep(of), {}, nullptr, {}};
-    pass_on(*level.step, size, error);
-    for (const LevelStep::Net& net : level.step->nets) {
-      if (net.corner < 3) {
-        level.tip_control = net.control;
-        continue;
-      }
-      level.middle = keep(*net.kind);
-      level.middle_control = net.control;
-      double size_there = size, error_there = error;
-      pass_on(*level.middle, size_there, error_there);
-    }
-    return level;
-  };
-  double first_size = 2, first_error = enlarged(3 * gamma_bound(16));
-  first_ = level_of(kind, first_size, first_error);
-  for (const LevelStep::Net& net : first_.step->nets) {
-    if (net.corner == 3) continue;
-    Tip& tip = tips_.emplace_back(Tip{net.control, {first_}, {}, {}});
-    const Kind* last = net.kind;
-    double size = first_size, error = first_error;
-    follow(library, net, [&](unsigned level, const Kind& of) {
-      tip.levels[level] = level_of(of, size, error);
-      last = &of;
-    });
-    tip.table = flatten(library.tip_table(*last), *last, tip.columns);
-    error_of_largest_ = std::max(error_of_largest_, error);
+template <class T>
+SparseRows<T>::SparseRows(const Stencils& rows, std::size_t count, std::span<const std::uint32_t> names)
+    : places(count) {
+  std::iota(places.begin(), places.end(), 0u);
+  const auto length = [&](std::uint32_t r) { return static_cast<std::uint32_t>(rows.row(r).sources.size()); };
+  std::stable_sort(places.begin(), places.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return length(a) < length(b); });
+  for (const std::uint32_t r : places) {
+    const Stencils::Row row = rows.row(r);
+    for (const std::uint32_t source : row.sources) sources.push_back(names.empty() ? source : names[source]);
+    for (const double weight : row.weights) weights.push_back(static_cast<T>(weight));
+    if (runs.empty() || runs.back().length != length(r)) runs.push_back({0, length(r)});
+    ++runs.back().rows;
   }
 }
 
-std::size_t RowsWithTips::bezier_count(unsigned levels) const {
+// Errors of a coordinate of points, all of which are of at most `size`, for control points of at most 1.
+template <class T>
+struct RowsWithTips<T>::Growth {
+  double of_points = 1, of_largest = sizeof(T) == sizeof(double) ? 0 : roundoff_of<T>, size = 1;
+  void pass_on(const Stencils& by) {
+    const double sum = std::max(1.0, by.max_abs_sum());
+    std::size_t entries = 0;
+    for (std::size_t r = 0; r < by.row_count(); ++r) entries = std::max(entries, by.row(r).sources.size());
+    of_points = enlarged(of_points * (sum + by.max_error()));
+    of_largest = by.result_error(size, of_largest);
+    // Roundings of weights and of sums in single precision.
+    if (sizeof(T) < sizeof(double)) of_largest = enlarged(of_largest + gamma_of<T>(entries + 2) * sum * size);
+    size = enlarged(size * sum);
+  }
+};
+
+// Steps, each once.
+template <class T>
+struct RowsWithTips<T>::Maker {
+  RowsWithTips& rows;
+  BoundsCache& library;
+  std::map<std::tuple<const Kind*, std::vector<std::uint32_t>, bool>, const Step*> known;
+
+  // Of a kind, from points whose numbers are `names`. `inner`: without points that the step before has.
+  const Step* step(const Kind& kind, const std::vector<std::uint32_t>& names, bool inner) {
+    const Step*& own = known[{&kind, names, inner}];
+    if (own) return own;
+    const LevelStep& of = library.level_step(kind);
+    const std::size_t count = of.points.row_count();
+    rows.most_points_ = std::max(rows.most_points_, count);
+    Step made{SparseRows<T>(of.points, count, names),
+              SparseRows<T>(of.bezier, inner ? of.inner : of.bezier.row_count())};
+    own = rows.steps_.emplace_back(std::make_unique<const Step>(std::move(made))).get();
+    return own;
+  }
+  void widen(const Growth& growth) {
+    rows.error_of_points_ = std::max(rows.error_of_points_, growth.of_points);
+    rows.error_of_largest_ = std::max(rows.error_of_largest_, growth.of_largest);
+  }
+  void pass_on(const LevelStep& step, Growth& growth) {
+    growth.pass_on(step.points);
+    widen(growth);
+    Growth bezier = growth;
+    bezier.pass_on(step.bezier);
+    widen(bezier);
+  }
+  Level level(const Kind& kind, const std::vector<std::uint32_t>& names, bool inner, Growth& growth) {
+    Level result;
+    result.step = step(kind, names, inner);
+    pass_on(library.level_step(kind), growth);
+    for (const LevelStep::Net& net : std::vector<LevelStep::Net>(library.level_step(kind).nets)) {
+      if (net.corner < 3) {
+        result.tip_control = net.control;
+        continue;
+      }
+      result.middle = step(*net.kind, net.control, false);
+      Growth there = growth;
+      pass_on(library.level_step(*net.kind), there);
+    }
+    return result;
+  }
+};
+
+// Derivations/rounding.md, "Batches".
+template <class T>
+RowsWithTips<T>::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind) {
+  Maker maker{*this, library, {}};
+  Growth of_first;
+  first_ = maker.level(kind, {}, false, of_first);
+  for (const LevelStep::Net& net : std::vector<LevelStep::Net>(library.level_step(kind).nets)) {
+    if (net.corner == 3) continue;
+    Tip& tip = tips_.emplace_back();
+    tip.control = net.control;
+    const Kind* last = net.kind;
+    Growth growth = of_first;
+    follow(library, net, [&](unsigned level, const LevelStep::Net& from) {
+      // The piece beyond is the middle one of the step before.
+      tip.levels[level] = maker.level(*from.kind, from.control, true, growth);
+      last = from.kind;
+    });
+    tip.table = flatten(library.tip_table(*last), *last, tip.columns);
+  }
+}
+
+template <class T>
+std::size_t RowsWithTips<T>::bezier_count(unsigned levels) const {
   const auto count_of = [](const Level& level) {
-    return level.step->bezier.row_count() + (level.middle != nullptr ? level.middle->bezier.row_count() : 0);
+    return level.step->bezier.places.size() + (level.middle ? level.middle->bezier.places.size() : 0);
   };
   std::size_t count = count_of(first_);
   for (const Tip& tip : tips_) {
@@ -327,10 +562,20 @@ std::size_t RowsWithTips::bezier_count(unsigned levels) const {
   return count;
 }
 
-void fit_rows(const RowsWithTips& rows, unsigned levels, std::span<const Point3> points,
-              std::span<const VertexId> control, std::span<OffsetTriangle> out) {
-  SNUG_EXPECT(levels >= RowsWithTips::least_levels && levels <= RowsWithTips::most_levels);
+template class RowsWithTips<float>;
+template class RowsWithTips<double>;
+
+template <>
+void fit_rows<double>(const RowsWithTips<double>& rows, unsigned levels, std::span<const Point3> points,
+                      std::span<const VertexId> control, std::span<OffsetTriangle> out) {
+  SNUG_EXPECT(levels >= least_row_levels && levels <= most_row_levels);
   HWY_DYNAMIC_DISPATCH(FitRows)(rows, levels, points, control.data(), out);
+}
+template <>
+void fit_rows<float>(const RowsWithTips<float>& rows, unsigned levels, std::span<const Point3> points,
+                     std::span<const VertexId> control, std::span<OffsetTriangle> out) {
+  SNUG_EXPECT(levels >= least_row_levels && levels <= most_row_levels);
+  HWY_DYNAMIC_DISPATCH(FitRowsInSingle)(rows, levels, points, control.data(), out);
 }
 
 }  // namespace snug::kernels

@@ -12,33 +12,53 @@
 
 namespace snug::kernels {
 
-/// Input of fit_rows() for a kind: its steps, level by level, and tables for the tips below these.
+/// Rows of a sparse matrix as kernels read them: those of one length together, since the end of a loop that is not foreseen costs as
+/// much as a row.
+template <class T>
+struct SparseRows {
+  /// The first `count` rows. Source i becomes names[i], if there are names.
+  SparseRows(const Stencils& rows, std::size_t count, std::span<const std::uint32_t> names = {});
+  struct Run {
+    std::uint32_t rows, length;
+  };
+  std::vector<Run> runs;
+  std::vector<std::uint32_t> places;   ///< of each row among all
+  std::vector<std::uint32_t> sources;  ///< row by row
+  std::vector<T> weights;
+};
+
+/// Where tips are, which are of kinds that come again by then, and how many there are.
+inline constexpr unsigned least_row_levels = 3, most_row_levels = 6;
+inline constexpr std::size_t most_tips = 3;
+
+/// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips, one a corner, beside which middle children
+/// are made of polynomials, at the latest after another step?
+[[nodiscard]] bool has_rows_with_tips(BoundsCache& library, const Kind& kind);
+
+/// Input of fit_rows() for a kind: its steps, level by level, and tables for the tips below these; in numbers T.
+template <class T>
 class RowsWithTips {
  public:
-  /// Where tips are, which are of kinds that come again by then.
-  static constexpr unsigned least_levels = 3, most_levels = 6;
-  static constexpr std::size_t most_tips = 3;
-
-  /// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips, one a corner, beside which middle children
-  /// are made of polynomials, at the latest after another step?
-  [[nodiscard]] static bool fit(BoundsCache& library, const Kind& kind);
-  /// Requires:  fit(kind); kind and library outlive this.
+  /// Requires:  has_rows_with_tips(library, kind); kind and library outlive this.
   RowsWithTips(BoundsCache& library, const Kind& kind);
 
-  /// A step, and what it leaves: control points of the tip, if there is only one, and those of a middle child that is no polynomial,
-  /// as of a half beside an extraordinary corner of its quad, with the step that it takes.
+  /// New points of a step, from those of the step before, and Bezier points from these.
+  struct Step {
+    SparseRows<T> points, bezier;
+  };
+  /// A step; the net of its tip, if there is only one; and the step of a middle child that is no polynomial, as of a half beside an
+  /// extraordinary corner of its quad.
   struct Level {
-    const LevelStep* step;
-    std::span<const std::uint32_t> tip_control;
-    const LevelStep* middle;
-    std::span<const std::uint32_t> middle_control;
+    const Step* step = nullptr;
+    std::vector<std::uint32_t> tip_control;
+    const Step* middle = nullptr;
   };
   /// A piece that is no polynomial: its net, the levels from there on, and the table of their last kind.
   struct Tip {
-    std::span<const std::uint32_t> control;
-    std::array<Level, most_levels> levels;  // the first is the patch's
-    FlatTable table;
-    std::vector<TableColumn> columns;
+    std::vector<std::uint32_t> control;
+    std::array<Level, most_row_levels> levels;  // the first is the patch's
+    FlatTable<T> table;
+    std::vector<TableColumn<T>> columns;
   };
   [[nodiscard]] const Kind& kind() const { return *kind_; }
   /// Of the patch itself.
@@ -48,29 +68,40 @@ class RowsWithTips {
   [[nodiscard]] std::size_t most_points() const { return most_points_; }
   /// After so many levels.
   [[nodiscard]] std::size_t bezier_count(unsigned levels) const;
-  /// Times the largest |coordinate| of a control point, relative to any point: what a point is off by.
+
+  /// What a coordinate of a point is off by, at most: these times an error of all control points, and times the largest such
+  /// coordinate of one.
+  [[nodiscard]] double error_of_points() const { return error_of_points_; }
   [[nodiscard]] double error_of_largest() const { return error_of_largest_; }
 
  private:
+  struct Growth;
+  struct Maker;
+
   const Kind* kind_;
-  std::vector<std::unique_ptr<const LevelStep>> steps_;  // of the patch, then of tips
-  Level first_{};
+  std::vector<std::unique_ptr<const Step>> steps_;
+  Level first_;
   std::vector<Tip> tips_;
   std::size_t most_points_ = 0;
-  double error_of_largest_ = 0;
+  double error_of_points_ = 1, error_of_largest_ = 0;
 };
 
-/// Offset triangles of many patches of one kind with extraordinary corners, a patch a lane. A negative radius
-/// is no answer: take the general way.
+/// The radius of no answer where single precision would make it larger by some hundredth.
+inline constexpr double needs_digits = -2;
+
+/// Offset triangles of many patches of one kind with extraordinary corners, a patch a lane, in numbers T: float or double.
 ///
 /// Guarantee: the patch lies in the offset triangle, whose corners are the limits of the patch's, moved along
-///            their normal to the middle of what bounds it; in the kind's order of corners.
-///            No answer where farthest() has none, and where tips stick out of the rest by 15 %: more levels may
-///            have one.
-/// Requires:  levels from least_levels to most_levels; control: rows.kind().control_count() vertices of `points` a
+///            their normal to the middle of what bounds it; in the kind's order of corners. The corners are found in double
+///            precision whatever T is.
+///            No answer, a negative radius, where farthest() has none, and where tips stick out of the rest by 15 %: more levels may
+///            have one. `needs_digits` where single precision would make a radius larger by some hundredth.
+/// Requires:  levels from least_row_levels to most_row_levels; control: rows.kind().control_count() vertices of `points` a
 ///            patch, in the kind's order; out.size() patches; points as in farthest().
 /// Cost:      some 90 operations a Bezier point, of which a level of a tip has about 36.
-void fit_rows(const RowsWithTips& rows, unsigned levels, std::span<const Point3> points,
+/// Source:    derivations/rounding.md, "Batches".
+template <class T>
+void fit_rows(const RowsWithTips<T>& rows, unsigned levels, std::span<const Point3> points,
               std::span<const VertexId> control, std::span<OffsetTriangle> out);
 
 }  // namespace snug::kernels

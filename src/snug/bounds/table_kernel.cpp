@@ -47,25 +47,28 @@ class GatheredControl {
 
 // From sums to answers.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void finish_lanes(D d, const FlatTable& table, const LinearV<V>* linear, V (&middle)[3][3],
-                             const V (&half)[3][3], V largest, std::span<OffsetTriangle> out) {
-  V placed = hn::Zero(d), probe = hn::Zero(d);
+HWY_INLINE void finish_lanes(D d, const FlatTable<double>& table, const LinearV<V>* linear,
+                             TableSumsV<V>* sums, std::span<OffsetTriangle> out) {
+  V placed = hn::Zero(d), probe = hn::Zero(d), largest = hn::Zero(d), off = hn::Zero(d);
   for (std::size_t a = 0; a < 3; ++a) {
-    for (V& m : middle[a]) {
+    for (V& m : sums[a].middle) {
       m = hn::Add(linear[a].origin, m);
       placed = hn::Max(placed, hn::Abs(m));
       probe =
           hn::Add(probe, hn::Sub(m, m));  // stays 0 unless one is not finite, whatever maxima make of that
     }
+    largest = hn::Max(largest, sums[a].largest);
+    off = hn::Max(off, sums[a].off);
   }
-  const V given =
-      hn::Add(hn::Mul(hn::Set(d, table.error_of_largest), largest), hn::Set(d, table.error_at_least));
+  const V given = hn::Add(hn::Add(hn::Mul(hn::Set(d, table.error_of_largest), largest),
+                                  hn::Mul(hn::Set(d, table.error_of_offset), off)),
+                          hn::Set(d, table.error_at_least));
   const V error = hn::Add(given, hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed));
   V farthest_sq = hn::Zero(d);
   for (std::size_t k = 0; k < 3; ++k) {
     V sum = hn::Zero(d);
     for (std::size_t a = 0; a < 3; ++a) {
-      const V h = hn::Add(half[a][k], error);
+      const V h = hn::Add(sums[a].half[k], error);
       sum = hn::Add(sum, hn::Mul(h, h));
     }
     farthest_sq = hn::Max(farthest_sq, sum);
@@ -76,13 +79,13 @@ HWY_INLINE void finish_lanes(D d, const FlatTable& table, const LinearV<V>* line
   const V answer = hn::IfThenElse(finite, radius, hn::Set(d, INFINITY));
 
   Vec3<V> corner[3];
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = {middle[0][k], middle[1][k], middle[2][k]};
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = {sums[0].middle[k], sums[1].middle[k], sums[2].middle[k]};
   hand_out(d, corner, answer, hn::Mul(hn::Set(d, spatial_error(1)), error), out);
 }
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> points, const VertexId* which,
-                          std::span<OffsetTriangle> out) {
+HWY_INLINE void fit_lanes(D d, const FlatTable<double>& table, std::span<const Point3> points,
+                          const VertexId* which, std::span<OffsetTriangle> out) {
   const std::size_t count = table.columns.size() + table.first;
   GatheredControl control(points, which, count, out.size(), hn::Lanes(d));
   LinearV<V> linear[3];
@@ -92,17 +95,18 @@ HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> p
     control.take(from, to);
     add_to_linear(d, table, control, from, to, linear);
   }
-  V middle[3][3], half[3][3], largest;
-  begin_boxes(d, table, linear, middle, half, largest);
+  TableSumsV<V> sums[3];
+  begin_boxes(d, linear, sums);
   for (std::size_t from = 0; from < count; from += block) {
     const std::size_t to = std::min(count, from + block);
     control.take(from, to);
-    add_to_boxes(d, table, control, from, to, linear, middle, half, largest);
+    add_to_boxes(d, table, control, from, to, linear, sums);
   }
-  finish_lanes(d, table, linear, middle, half, largest, out);
+  end_boxes(d, table, linear, sums);
+  finish_lanes(d, table, linear, sums, out);
 }
 
-void FitTable(const FlatTable& table, std::span<const Point3> points, const VertexId* control,
+void FitTable(const FlatTable<double>& table, std::span<const Point3> points, const VertexId* control,
               std::span<OffsetTriangle> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d), count = table.columns.size() + table.first;
@@ -123,7 +127,7 @@ HWY_EXPORT(FitTable);
 
 void fit_table(const BoundTable& table, const Kind& kind, std::span<const Point3> points,
                std::span<const VertexId> control, std::span<OffsetTriangle> out) {
-  thread_local std::vector<TableColumn> memory;
+  thread_local std::vector<TableColumn<double>> memory;
   HWY_DYNAMIC_DISPATCH(FitTable)(flatten(table, kind, memory), points, control.data(), out);
 }
 

@@ -18,8 +18,29 @@ namespace {
 
 constexpr std::size_t chunk_size = 256;
 
-// Levels of rows that patches are tried with in turn.
-constexpr unsigned levels_of_rows[] = {3, 5};
+// Fits patches without an answer for this reason, a negative radius, once more: fit(control, answers).
+template <class Fit>
+void fit_rest(std::size_t controls, double reason, std::span<const VertexId> control,
+              std::span<OffsetTriangle> answers, const Fit& fit) {
+  thread_local std::vector<VertexId> rest;
+  thread_local std::vector<OffsetTriangle> again;
+  const auto is_rest = [reason](const OffsetTriangle& answer) { return answer.radius == reason; };
+  rest.clear();
+  rest.reserve(control.size());
+  again.reserve(answers.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!is_rest(answers[i])) continue;
+    const auto own = control.subspan(i * controls, controls);
+    rest.insert(rest.end(), own.begin(), own.end());
+  }
+  again.resize(rest.size() / controls);
+  if (again.empty()) return;
+  fit(std::span<const VertexId>(rest), std::span(again));
+  auto next = again.begin();
+  for (OffsetTriangle& answer : answers) {
+    if (is_rest(answer)) answer = *next++;
+  }
+}
 
 // One a thread; keeps its memory from call to call.
 struct Scratch {
@@ -105,8 +126,9 @@ BatchBounds::BatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
       Group& group = groups_[g];
       if (method == BoundMethod::table) {
         group.table = &library_->table(*group.kind);
-      } else if (!group.polygon && kernels::RowsWithTips::fit(*library_, *group.kind)) {
+      } else if (!group.polygon && kernels::has_rows_with_tips(*library_, *group.kind)) {
         group.rows.emplace(*library_, *group.kind);
+        group.exact_rows = std::make_unique<Lazy<kernels::RowsWithTips<double>>>();
       } else {
         prepare_bounding_points(*library_, *group.kind);
       }
@@ -128,7 +150,7 @@ void BatchBounds::sort_by_kind(const LimitSurface& surface) {
                                    : group_of_kind[kind.id().index()];
     if (group == none) {
       group = static_cast<std::uint32_t>(groups_.size());
-      groups_.push_back({&kind, polygon, part, nullptr, 0, 0, std::nullopt});
+      groups_.push_back({&kind, polygon, part, nullptr, 0, 0, std::nullopt, nullptr});
       sizes.push_back(0);
     }
     ++sizes[group];
@@ -184,27 +206,20 @@ void BatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangl
   }
 }
 
-// Each time those without an answer again.
 void BatchBounds::fit_by_rows(const Group& group, std::span<const VertexId> control,
                               std::span<OffsetTriangle> answers) const {
-  thread_local std::vector<VertexId> rest;
-  thread_local std::vector<OffsetTriangle> again;
+  // Where tips stick out, more levels.
+  constexpr unsigned levels = 3, more_levels = 5;
   const std::size_t controls = control_count(group);
-  kernels::fit_rows(*group.rows, levels_of_rows[0], scaled_, control, answers);
-  rest.clear();
-  rest.reserve(control.size());
-  again.reserve(answers.size());
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (answers[i].radius >= 0) continue;
-    const auto own = control.subspan(i * controls, controls);
-    rest.insert(rest.end(), own.begin(), own.end());
-  }
-  again.resize(rest.size() / controls);
-  kernels::fit_rows(*group.rows, levels_of_rows[1], scaled_, rest, again);
-  auto next = again.begin();
-  for (OffsetTriangle& answer : answers) {
-    if (answer.radius < 0) answer = *next++;
-  }
+  kernels::fit_rows<float>(*group.rows, levels, scaled_, control, answers);
+  fit_rest(controls, -1, control, answers, [&](std::span<const VertexId> of, auto out) {
+    kernels::fit_rows<float>(*group.rows, more_levels, scaled_, of, out);
+  });
+  fit_rest(controls, kernels::needs_digits, control, answers, [&](std::span<const VertexId> of, auto out) {
+    const auto& rows =
+        group.exact_rows->get([&] { return kernels::RowsWithTips<double>(*library_, *group.kind); });
+    kernels::fit_rows<double>(rows, more_levels, scaled_, of, out);
+  });
 }
 
 void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const {

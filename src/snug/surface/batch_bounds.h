@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <snug/bounds/rows_kernel.h>
 #include <snug/surface.h>
 #include <snug/surface/limit_surface.h>
+#include <support/lazy.h>
 
 namespace snug {
 
@@ -32,9 +34,10 @@ class BatchBounds {
     const Kind* kind;
     const Kind* polygon;  // none: from control points
     std::uint32_t part;
-    const BoundTable* table;                    // none: from rows
-    std::size_t first_place, first_control;     // in places_ and control_
-    std::optional<kernels::RowsWithTips> rows;  // none: another way
+    const BoundTable* table;                                          // none: from rows
+    std::size_t first_place, first_control;                           // in places_ and control_
+    std::optional<kernels::RowsWithTips<float>> rows;                 // none: another way
+    std::unique_ptr<Lazy<kernels::RowsWithTips<double>>> exact_rows;  // for patches that need more digits
   };
   // Patches [begin, end) of places_, all of one group: what one thread does at once.
   struct Chunk {
