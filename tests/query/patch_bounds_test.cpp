@@ -68,7 +68,9 @@ TEST(enclosures, are_made_as_the_surface_says) {
     std::vector<OffsetTriangle> whole(offsets.size());
     bounds.update(mesh.points, whole);
     for (std::size_t i = 0; i < whole.size(); ++i) {
-      EXPECT_NEAR(whole[i].radius, offsets[i].radius, 1e-9 * surface.size());
+      // Rows of many patches are in single precision.
+      const double near = method == BoundMethod::rows ? 1e-3 * offsets[i].radius : 1e-9 * surface.size();
+      EXPECT_NEAR(whole[i].radius, offsets[i].radius, near);
     }
   }
   EXPECT_LT(radii[0], 0.9 * radii[1]);
