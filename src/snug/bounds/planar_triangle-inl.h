@@ -125,18 +125,10 @@ HWY_INLINE V aside_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
   return hypotenuse_sq(f.s2, max3(zero, hn::Sub(along, t.l2), hn::Sub(zero, along)));
 }
 
+// The square of the distance, but for the height's own error if place and edges are off by `margin` at most. By the edge that the foot is
+// farthest outside of: any edge is right, this one nearest but for feet beyond obtuse corners.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
-  const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
-  if (hn::AllFalse(d, outside)) return f.height_sq;
-  const V nearest = hn::Min(aside_sq<0>(d, t, f), hn::Min(aside_sq<1>(d, t, f), aside_sq<2>(d, t, f)));
-  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, nearest));
-}
-
-// The square of what the distance is at most, but for the height's own error, if place and edges are off by `margin` at most. By the edge
-// that the foot is farthest outside of: any edge is right, this one nearest but for feet beyond obtuse corners.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V most_distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f, V margin) {
+HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f, V margin) {
   const V zero = hn::Zero(d), within = hn::Sub(zero, margin);
   const V across = hn::Max(f.s1, f.s2), farthest = hn::Max(f.s0, across);
   const auto outside = hn::Gt(farthest, within);
@@ -148,6 +140,11 @@ HWY_INLINE V most_distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f,
           length = hn::IfThenElse(first, t.l0, hn::IfThenElse(one, t.l1, t.l2));
   const V beyond = hn::Add(max3(hn::Sub(along, length), hn::Sub(zero, along), within), margin);
   return hn::Add(f.height_sq, hn::IfThenElseZero(outside, hypotenuse_sq(hn::Add(farthest, margin), beyond)));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
+  return distance_sq(d, t, f, hn::Zero(d));
 }
 
 // The same sooner for points that are rarely outside of other edges than one.

@@ -126,7 +126,7 @@ HWY_INLINE V farthest_of(D d, const PlanarTriangle<V>& t, const TipBoxes<V>& box
       for (const double side_y : {-1.0, 1.0}) {
         const V x = hn::Add(boxes.middle[0][k], hn::Mul(number(d, side_x), boxes.half[0][k]));
         const V y = hn::Add(boxes.middle[1][k], hn::Mul(number(d, side_y), boxes.half[1][k]));
-        farthest = hn::Max(farthest, most_distance_sq(d, t, foot_of(d, t, x, y, height), margin));
+        farthest = hn::Max(farthest, distance_sq(d, t, foot_of(d, t, x, y, height), margin));
       }
     }
   }
@@ -244,7 +244,7 @@ HWY_INLINE BoundedV<V, hn::Mask<D>> bound(D d, const RowsWithTips<T>& rows, unsi
   for (std::size_t r = 0; r < bezier; ++r) {
     const Vec3<V> p = load(d, memory.bezier, r);
     const V height = hn::Sub(p.z, result.middle);
-    rest = hn::Max(rest, most_distance_sq(d, t, foot_of(d, t, p.x, p.y, height), margin));
+    rest = hn::Max(rest, distance_sq(d, t, foot_of(d, t, p.x, p.y, height), margin));
   }
   for (std::size_t i = 0; i < rows.tips().size(); ++i) {
     tips = hn::Max(tips, farthest_of(d, t, boxes[i], result.middle, margin));
