@@ -289,6 +289,23 @@ def test_new_objects():
         assert text.startswith("ISO-10303-21;") and "'torus'" in text
 
 
+def test_control_meshes_keep_their_tags():
+    start()
+    for name in ("triangles", "creases of 0.3 and 0.8", "vertex crease of 0.6", "sheet, corner of two creases"):
+        obj = MESHES[name][0]()
+        alone(obj)
+        surface = surface_of(obj)
+        for ending in (".obj", ".usda"):
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "part" + ending)
+                bpy.ops.snug.control_mesh(filepath=path)
+                again = snug.read(path)
+            assert (again.scheme, again.boundary) == (surface.scheme, surface.boundary), name
+            assert np.array_equal(again.vertices, surface.vertices), name
+            assert sorted(map(tuple, again.creases)) == sorted(map(tuple, surface.creases)), name
+            assert sorted(map(tuple, again.corners)) == sorted(map(tuple, surface.corners)), name
+
+
 def test_save_and_load():
     two_tori(1.0)
     bpy.context.scene.snug_live = True

@@ -23,6 +23,13 @@ def needs(parts, count, what):
         raise cages.NoSurface(f"select {what} with a Subdivision modifier as the last one that is on")
 
 
+def active_surface(context):
+    """(object, surface) of the active object, or else of the first that is selected."""
+    parts = selected_surfaces(context)
+    needs(parts, 1, "an object")
+    return next((part for part in parts if part[0] == context.object), parts[0])
+
+
 class Asking:
     """Turns what is raised into a report, and puts the answer where the panel shows it."""
 
@@ -97,9 +104,7 @@ class SNUG_OT_self_contact(Asking, bpy.types.Operator):
     bl_label = "Does it meet itself?"
 
     def ask(self, context):
-        parts = [part for part in selected_surfaces(context) if part[0] == context.object] or selected_surfaces(context)[:1]
-        needs(parts, 1, "an object")
-        obj, surface = parts[0]
+        obj, surface = active_surface(context)
         marks.clear(context.scene)
         found = surface.self_contact()
         meets = [pair for pair in found.pairs if pair.verdict == "intersecting"]
@@ -192,9 +197,7 @@ class SNUG_OT_step(Asking, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def ask(self, context):
-        parts = [part for part in selected_surfaces(context) if part[0] == context.object] or selected_surfaces(context)[:1]
-        needs(parts, 1, "an object")
-        obj, surface = parts[0]
+        obj, surface = active_surface(context)
         # Blender's unit is a metre unless the scene has another scale, a STEP file's is one of a few.
         scale = context.scene.unit_settings.scale_length
         units = {1.0: "m", 0.01: "cm", 0.001: "mm"}.get(round(scale, 6))
@@ -205,4 +208,33 @@ class SNUG_OT_step(Asking, bpy.types.Operator):
         return [f"{obj.name}: {path}"]
 
 
-CLASSES = (SNUG_OT_touch, SNUG_OT_distance, SNUG_OT_self_contact, SNUG_OT_deviation, SNUG_OT_triangles, SNUG_OT_envelope, SNUG_OT_step)
+class SNUG_OT_control_mesh(Asking, bpy.types.Operator):
+    """Writes the control mesh of the active object with its creases, corners and boundary rule, for snug elsewhere"""
+
+    bl_idname = "snug.control_mesh"
+    bl_label = "Export control mesh"
+    filepath: StringProperty(subtype="FILE_PATH")
+    filter_glob: StringProperty(default="*.obj;*.usda", options={"HIDDEN"})
+
+    def invoke(self, context, event):
+        self.filepath = f"{context.object.name}.obj" if context.object else "surface.obj"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def ask(self, context):
+        obj, surface = active_surface(context)
+        path = bpy.path.abspath(self.filepath)
+        surface.write(path)
+        return [f"{obj.name}: {path}"]
+
+
+CLASSES = (
+    SNUG_OT_touch,
+    SNUG_OT_distance,
+    SNUG_OT_self_contact,
+    SNUG_OT_deviation,
+    SNUG_OT_triangles,
+    SNUG_OT_envelope,
+    SNUG_OT_step,
+    SNUG_OT_control_mesh,
+)

@@ -33,6 +33,7 @@ class SNUG_PT_panel(bpy.types.Panel):
         make.operator("snug.envelope", icon="MESH_ICOSPHERE")
         make.operator("snug.deviation", icon="COLOR")
         make.operator("snug.step", icon="EXPORT")
+        make.operator("snug.control_mesh", icon="MESH_GRID")
         if scene.snug_answer:
             box = layout.box().column(align=True)
             for line in lines_of(scene.snug_answer, context.region.width / context.preferences.system.ui_scale):
