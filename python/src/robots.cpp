@@ -3,6 +3,7 @@
 #include <snug/robot.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -94,13 +95,48 @@ std::function<double(double)> length_by_size(const py::object& given, const char
   return [=](double size) { return *one == *two ? *one : *one * size; };
 }
 
+std::vector<std::vector<double>> positions_along(const Robot& robot, const py::list& path) {
+  std::vector<std::vector<double>> positions;
+  for (const auto& each : path)
+    positions.push_back(positions_of(robot, py::reinterpret_borrow<py::object>(each)));
+  return positions;
+}
+
+// The shape that first_contacts() names so.
+std::pair<std::uint32_t, Robot::Shape> shape_named(const Robot& robot, const std::string& name) {
+  const auto is_shape = [&](const Robot::Link& link, std::size_t shape) {
+    return name == (link.shapes.size() == 1 ? link.name : link.name + '#' + std::to_string(shape + 1));
+  };
+  for (std::uint32_t l = 0; l < robot.links.size(); ++l) {
+    const Robot::Link& link = robot.links[l];
+    for (std::size_t shape = 0; shape < link.shapes.size(); ++shape)
+      if (is_shape(link, shape)) return {l, link.shapes[shape]};
+    if (name != link.name) continue;
+    if (link.shapes.empty()) throw py::value_error("robot: link '" + name + "' has no shape");
+    throw py::value_error("robot: link '" + name + "' has several shapes: give '" + name + "#1' to '" + name +
+                          '#' + std::to_string(link.shapes.size()) + "'");
+  }
+  throw py::value_error("robot: no link is called '" + name + "'");
+}
+
+py::tuple link_motions(const PyRobot& self, const std::string& a, const std::string& b,
+                       const py::list& path) {
+  const Robot& robot = self.made().robot;
+  const std::pair<std::uint32_t, Robot::Shape> of_a = shape_named(robot, a), of_b = shape_named(robot, b);
+  const std::vector<std::vector<double>> positions = positions_along(robot, path);
+  auto [motion_a, motion_b] =
+      snug::link_motions(robot, {of_a.first, of_a.second.pose}, {of_b.first, of_b.second.pose}, positions);
+  const auto surface = [&](const Robot::Shape& shape) {
+    return std::make_unique<PySurface>(robot.meshes[shape.mesh], SurfaceOptions{});
+  };
+  return py::make_tuple(surface(of_a.second), std::move(motion_a), surface(of_b.second), std::move(motion_b));
+}
+
 py::list first_contacts(const PyRobot& self, const py::list& path, const py::object& tolerance,
                         const py::object& margin, bool joined, const std::string& group,
                         const py::object& max_splits, const py::object& threads, const py::object& progress) {
   const Loaded& loaded = self.made();
-  std::vector<std::vector<double>> positions;
-  for (const auto& each : path)
-    positions.push_back(positions_of(loaded.robot, py::reinterpret_borrow<py::object>(each)));
+  const std::vector<std::vector<double>> positions = positions_along(loaded.robot, path);
   const LinkContactsOptions options{.tolerance = length_by_size(tolerance, "tolerance"),
                                     .margin = length_by_size(margin, "margin"),
                                     .joined = joined,
@@ -177,6 +213,12 @@ void add_robots(py::module_& module) {
            "frame of "
            "the last link\n"
            "that carries both. Raises ValueError, OverflowError.")
+      .def("link_motions", link_motions, arg("a"), arg("b"), arg("path"),
+           "Shapes of two links, and how they move along a path, in the frame of the last link that moves "
+           "both: surface,\n"
+           "Trajectory, surface, Trajectory, as clearance() and time_of_contact() take them.\n\n"
+           "a, b: links; `link#2` where one has several shapes. path: as for first_contacts().\n\n"
+           "Surfaces of cylinders and spheres go beyond these by at most `outward`. Raises ValueError.")
       .def("__repr__", [](const PyRobot& self) {
         const Robot& robot = self.made().robot;
         return "<snug.Robot " + robot.name + ": " + std::to_string(robot.links.size()) + " links>";

@@ -115,8 +115,7 @@ TEST(urdf, paths_outside_are_refused) {
   }
   EXPECT_EQ(refusal(of("package://leg/b.obj"), options),
             "dir/r.urdf: URDF: line 3: 'package://leg/b.obj' is in a package whose folder is not known: give "
-            "--package "
-            "leg=FOLDER");
+            "--package leg=FOLDER, or in Python packages={'leg': FOLDER}");
   EXPECT_EQ(refusal(of("m/a.obj"), options), "dir/r.urdf:3: was read");
   const auto beside = [&](const char* file) {  // of a robot without a folder
     return unreadable([&] { static_cast<void>(parse_robot(robot(of(file)), "r.urdf", options)); });

@@ -47,6 +47,32 @@ def test_a_margin_is_kept_along_the_whole_path(arm):
         arm.first_contacts(fold, margin=-1)
 
 
+def test_link_motions_are_what_clearance_takes(arm, tmp_path):
+    path = [{}, {"shoulder": 0.4, "elbow": 1.2}]
+    base, still, lower, moving = arm.link_motions("base", "lower", path)
+    room = snug.clearance(base, still, lower, moving, relative=1e-3)
+    nearest = np.inf
+    for time in np.linspace(0, 1, 21):
+        link = arm.poses({"shoulder": 0.4 * time, "elbow": 1.2 * time})["lower"]
+        corners = lower.vertices @ moving.at(time)[:3, :3].T + moving.at(time)[:3, 3]
+        in_link = (corners - link[:3, 3]) @ link[:3, :3]
+        assert np.allclose(np.abs(in_link - [0.5, 0, 0]), [0.45, 0.075, 0.075]), "the box of the file"
+        gaps = np.maximum(np.abs(corners - [0.5, 0, 0]) - [0.45, 0.1, 0.1], 0)
+        nearest = min(nearest, np.linalg.norm(gaps, axis=1).min())
+    assert 0 < room.lower <= nearest and np.allclose(still.at(0.7), arm.poses()["base"] @ still.at(0))
+    for wrong in ("hand", "lower#1"):
+        with pytest.raises(ValueError, match=f"no link is called '{wrong}'"):
+            arm.link_motions("base", wrong, path)
+    twice = (tmp_path / "arm.urdf").read_text().replace("</collision>", "</collision><collision><geometry><box size='1 1 1'/></geometry></collision>", 1)
+    (tmp_path / "twice.urdf").write_text(twice.replace("</robot>", "<link name='bare'/>" + JOINT.format("j", "base", "bare") + "</robot>"))
+    double = snug.urdf(tmp_path / "twice.urdf")
+    assert double.link_motions("base#2", "lower", path)[0].size == 1
+    with pytest.raises(ValueError, match="'base' has several shapes: give 'base#1' to 'base#2'"):
+        double.link_motions("base", "lower", path)
+    with pytest.raises(ValueError, match="'bare' has no shape"):
+        double.link_motions("bare", "lower", path)
+
+
 def test_groups_restrict_what_is_asked(arm, tmp_path):
     (tmp_path / "arm.srdf").write_text("<robot><group name='wrist'><link name='lower'/></group></robot>")
     grouped = snug.urdf(tmp_path / "arm.urdf", srdf=tmp_path / "arm.srdf")

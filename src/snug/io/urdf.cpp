@@ -194,7 +194,8 @@ class RobotReader {
         return (fs::path(known->second) / path_inside(rest, name_, what)).generic_string();
       const auto all = options_.packages.find("");
       if (all == options_.packages.end())
-        fail(" is in a package whose folder is not known: give --package " + one_word(own) + "=FOLDER");
+        fail(" is in a package whose folder is not known: give --package " + one_word(own) +
+             "=FOLDER, or in Python packages={'" + one_word(own) + "': FOLDER}");
       return (fs::path(all->second) / path).generic_string();
     }
     std::string path = filename;
