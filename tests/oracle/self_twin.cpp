@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 namespace oracle {
@@ -36,43 +37,47 @@ bool passes(const Vec& from, const Vec& to, const std::array<Vec, 3>& t, Real ma
 std::optional<std::pair<std::size_t, std::size_t>> crossing_pair(
     std::span<const std::array<double, 3>> points, std::span<const std::array<std::uint32_t, 3>> triangles,
     double least, double share) {
+  // Boxes and numbers of triangles, in the order of their first coordinates.
   struct Item {
+    std::array<double, 3> low, high;
     std::size_t index;
-    std::array<Vec, 3> corners;
-    Vec low, high;
-    Real longest = 0;
   };
   std::vector<Item> items;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    Item item{i, {}, {}, {}};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& p = points[triangles[i][k]];
-      item.corners[k] = {p[0], p[1], p[2]};
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-      item.longest = std::max(item.longest, length(minus(item.corners[k], item.corners[(k + 1) % 3])));
+    Item item{{}, {}, i};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto [low, high] =
-          std::minmax({item.corners[0][axis], item.corners[1][axis], item.corners[2][axis]});
-      item.low[axis] = low;
-      item.high[axis] = high;
+      std::tie(item.low[axis], item.high[axis]) = std::minmax(
+          {points[triangles[i][0]][axis], points[triangles[i][1]][axis], points[triangles[i][2]][axis]});
     }
     items.push_back(item);
   }
   std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.low[0] < b.low[0]; });
+  const auto corners = [&](const Item& item) {
+    std::array<Vec, 3> all;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& p = points[triangles[item.index][k]];
+      all[k] = {p[0], p[1], p[2]};
+    }
+    return all;
+  };
+  const auto longest = [](const std::array<Vec, 3>& t) {
+    return std::max({length(minus(t[0], t[1])), length(minus(t[1], t[2])), length(minus(t[2], t[0]))});
+  };
   for (std::size_t i = 0; i < items.size(); ++i) {
-    for (std::size_t j = i + 1; j < items.size() && items[j].low[0] <= items[i].high[0]; ++j) {
-      const Item &a = items[i], &b = items[j];
+    const Item& a = items[i];
+    const auto& x = triangles[a.index];
+    for (std::size_t j = i + 1; j < items.size() && items[j].low[0] <= a.high[0]; ++j) {
+      const Item& b = items[j];
       if (a.low[1] > b.high[1] || b.low[1] > a.high[1] || a.low[2] > b.high[2] || b.low[2] > a.high[2])
         continue;
-      const auto &x = triangles[a.index], &y = triangles[b.index];
+      const auto& y = triangles[b.index];
       if (std::any_of(x.begin(), x.end(),
                       [&](auto v) { return std::find(y.begin(), y.end(), v) != y.end(); }))
         continue;
-      const Real margin = least + share * std::min(a.longest, b.longest);
+      const std::array<Vec, 3> s = corners(a), t = corners(b);
+      const Real margin = least + share * std::min(longest(s), longest(t));
       for (std::size_t k = 0; k < 3; ++k) {
-        if (passes(a.corners[k], a.corners[(k + 1) % 3], b.corners, margin) ||
-            passes(b.corners[k], b.corners[(k + 1) % 3], a.corners, margin)) {
+        if (passes(s[k], s[(k + 1) % 3], t, margin) || passes(t[k], t[(k + 1) % 3], s, margin)) {
           return std::pair(a.index, b.index);
         }
       }

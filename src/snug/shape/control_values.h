@@ -25,10 +25,12 @@ inline double largest_of(std::span<const double> values) {
 
 /// The values after a step.
 inline void apply(const Stencils& rows, const std::vector<double>& from, std::vector<double>& to) {
-  to.assign(rows.row_count(), 0.0);
+  to.resize(rows.row_count());
   for (std::size_t r = 0; r < to.size(); ++r) {
     const Stencils::Row row = rows.row(r);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) to[r] += row.weights[i] * from[row.sources[i]];
+    double sum = 0;
+    for (std::size_t i = 0; i < row.sources.size(); ++i) sum += row.weights[i] * from[row.sources[i]];
+    to[r] = sum;
   }
 }
 

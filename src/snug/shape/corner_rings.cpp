@@ -50,10 +50,11 @@ RingValues::RingValues(const RingDecay& decay, const Stencils& step, std::vector
   levels_.reserve(64);
   levels_.push_back(std::move(first));
   std::vector<double> parts;
+  Level last;
   while (parts.size() < max_rings) {
     descend_to(parts.size() + 1);
     // Of the differences that do not last.
-    const Level last = difference(parts.size(), order_of(decay));
+    difference(parts.size(), order_of(decay), last);
     const double left = extent(last.values);
     parts.push_back(enlarged(left + last.off));
     // Beyond, roundings are all that is seen, which grow in a chain; or there is little, for a whole period.
@@ -128,18 +129,25 @@ double RingValues::off_of(std::size_t level) const {
 }
 
 RingValues::Level RingValues::difference(std::size_t level, unsigned order) const {
-  if (order == 1) return step_between(levels_[level], levels_[level + 1]);
-  return step_between(difference(level, order - 1), difference(level + 1, order - 1));
+  Level step;
+  difference(level, order, step);
+  return step;
 }
 
-RingValues::Level RingValues::step_between(const Level& from, const Level& to) const {
-  Level step;
+void RingValues::difference(std::size_t level, unsigned order, Level& step) const {
+  if (order == 1) {
+    step_between(levels_[level], levels_[level + 1], step);
+  } else {
+    step_between(difference(level, order - 1), difference(level + 1, order - 1), step);
+  }
+}
+
+void RingValues::step_between(const Level& from, const Level& to, Level& step) const {
   step.values.resize(from.values.size());
   for (std::size_t i = 0; i < step.values.size(); ++i) step.values[i] = to.values[i] - from.values[i];
   centre(step.values);
   step.largest = largest_of(step.values);
   step.off = enlarged(from.off + to.off + (gamma_bound(3) + least_off_) * (from.largest + to.largest));
-  return step;
 }
 
 // Parts beyond the last ones shrink by the factor of a period.

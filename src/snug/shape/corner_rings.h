@@ -42,7 +42,8 @@ class RingValues {
  private:
   void descend();
   [[nodiscard]] double take_off_larger(Level& level);
-  [[nodiscard]] Level step_between(const Level& from, const Level& to) const;
+  void difference(std::size_t level, unsigned order, Level& step) const;
+  void step_between(const Level& from, const Level& to, Level& step) const;
   [[nodiscard]] double off_of(std::size_t level) const;
   void add_up(std::vector<double> parts);
 

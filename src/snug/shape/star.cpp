@@ -311,19 +311,20 @@ void add_of_rings(const StarSector& sector, int lengths, const Make& make, std::
 Vector3 seen_by_all(const Vector3& first, const std::vector<Vector3>& normals) {
   constexpr double enough = 0.3;
   constexpr int steps = 400;
+  std::vector<Vector3> units;
+  for (const Vector3& normal : normals) units.push_back(normalized(normal));
   Vector3 at = first;
   for (int i = 0; i < steps; ++i) {
     double least = INFINITY;
     Vector3 farthest;
-    for (const Vector3& normal : normals) {
-      const Vector3 unit = normalized(normal);
-      const double along = dot(at, unit) / length(at);
+    for (const Vector3& unit : units) {
+      const double along = dot(at, unit);
       if (along < least) {
         least = along;
         farthest = unit;
       }
     }
-    if (i == 0 && least > enough) return first;
+    if (i == 0 && least > enough * length(at)) return first;
     at = at + (1.0 / (i + 2)) * (farthest - at);
   }
   return normalized(at);
@@ -351,15 +352,21 @@ class StarCheck {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
     if (!make_frame() || (further_ && spike_)) return false;
     for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_, frame_off_));
+    // What costs least first.
+    return sectors_turn(true) && border_turns_once() && sectors_turn(false);
+  }
+
+ private:
+  [[nodiscard]] bool sectors_turn(bool polynomial) const {
     for (std::size_t s = 0; s < flat_.size(); ++s) {
+      if (flat_[s].kind->polynomial() != polynomial) continue;
       const auto centre = static_cast<unsigned>(sectors_[s].centre);
       if (!(spike_ ? turns_left_around_spike(flat_[s], centre) : turns_left_everywhere(flat_[s])))
         return false;
     }
-    return border_turns_once();
+    return true;
   }
 
- private:
   // Where the centre is a spike: what the row of the largest eigenvalue sees. Its direction is that of all sectors: its row is one of the
   // ring around the vertex, and simple. Each number of it is off by `error` at most.
   struct Spike {
