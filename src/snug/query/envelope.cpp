@@ -45,8 +45,10 @@ constexpr double piece_error_share = 0x1p-6, last_move_share = 0.5, vertex_share
 // The least cosine between a facet's normal and the way from the surface to its centre; between it and the mean one at a vertex where
 // the mesh is not bent.
 constexpr double least_facing = 0.3, least_flat = 0.8;
-// How far collapses move planes before: less, if that does not do.
-constexpr std::array first_move_shares{0.11, 0.04};
+// How far collapses move planes before, first and second.
+constexpr double first_move_share = 0.04, second_move_share = 0.11;
+// Of all facets: more are not halved.
+constexpr double max_wrong_share = 0.125;
 constexpr int first_rounds = 8, max_rounds = 24, max_reductions = 5, max_steps = 8;
 constexpr std::size_t facets_beside = 20'000, max_boxes = 20'000, max_known = 100'000;
 constexpr std::uint64_t least_pieces = 1u << 17;
@@ -197,15 +199,7 @@ class EnvelopeMaker {
       if (!made) return without(HullFault::too_few_triangles, pieces_.members[0]);
       monitor_of(run_).report(0.4);
       mesh_ = std::move(*made);
-      const ClosedMesh whole = mesh_;
-      if (!halve_bent()) continue;
-      // Bridges may be far from surfaces, so that much is let pass there.
-      const auto moves = std::span(first_move_shares).subspan(ball_ ? 1 : 0);
-      const bool reduced = std::any_of(moves.begin(), moves.end(), [&](double move) {
-        mesh_ = whole;
-        return reduce(move, {});
-      });
-      if (!reduced) continue;
+      if (!halve_bent() || !reduce_far()) continue;
       monitor_of(run_).report(0.6);
       // Looked at here and there, judged at the end.
       ClosedMesh fine = mesh_;
@@ -315,16 +309,30 @@ class EnvelopeMaker {
     push_off(least_distance(), beside);
     return halve_wrong(first_rounds);
   }
-  // Fewer triangles, all of them proved. Where that fails all that is near stays as it is. False if it fails even so.
-  bool reduce(double share, const std::function<bool(const Triangle&)>& accept) {
+  // By small moves, and by larger ones from there, so that what is tried again begins at few triangles. Where these do not do the small
+  // ones stay.
+  bool reduce_far() {
+    const ClosedMesh whole = mesh_;
+    const double width = band_.upper - band_.lower;
+    simplify(mesh_, first_move_share * width, {}, {}, run_.threads, monitor_);
+    const ClosedMesh near = mesh_;
+    if (!ball_ && reduce(second_move_share, {})) return true;
+    mesh_ = whole;
+    return reduce(first_move_share, {}, &near);
+  }
+  // Fewer triangles, all of them proved. Where that fails all that is near stays as it is. False if it fails even so. `first`: the mesh,
+  // if it is known, before anything has failed.
+  bool reduce(double share, const std::function<bool(const Triangle&)>& accept,
+              const ClosedMesh* first = nullptr) {
     const double least = accept ? 0 : least_distance();
     ClosedMesh whole = mesh_;
     std::vector<std::uint8_t> kept;
     for (int round = 0; round < max_reductions; ++round) {
-      mesh_ = whole;
+      mesh_ = round == 0 && first != nullptr ? *first : whole;
       const bool last = round + 1 == max_reductions;
       if (last) kept.assign(whole.points.size(), 1);
-      simplify(mesh_, share * (band_.upper - band_.lower), accept, kept, run_.threads, monitor_);
+      if (round > 0 || first == nullptr)
+        simplify(mesh_, share * (band_.upper - band_.lower), accept, kept, run_.threads, monitor_);
       push_off(least);
       wrong_.assign(mesh_.triangles.size(), to_halve);
       if (repair(last ? max_rounds : first_rounds)) return true;
@@ -398,6 +406,9 @@ class EnvelopeMaker {
       if (count == 0) return true;
       if (round < 3) at_first = std::max(at_first, count);
       if (round == rounds || mesh_.triangles.size() > most || count > 4 * at_first) return false;
+      const auto facets = static_cast<double>(mesh_.triangles.size());
+      if (rounds == first_rounds && round == 0 && static_cast<double>(count) > max_wrong_share * facets)
+        return false;
       steer(halve_longest_sides(mesh_, wrong_));
     }
   }
