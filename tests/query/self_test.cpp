@@ -178,7 +178,16 @@ TEST(self_contact, collapsed_meshes_are_undecided_and_pinched_ones_are_clear) {
   EXPECT_EQ(ask(meshes::two_cubes_at_a_vertex(), Scheme::catmark).verdict, SelfVerdict::clear);
   EXPECT_NE(ask(meshes::back_to_back(), Scheme::catmark, {}, {.max_splits = 20'000}).verdict,
             SelfVerdict::clear);
-  EXPECT_NE(ask(meshes::book(3), Scheme::catmark, {}, {.max_splits = 20'000}).verdict, SelfVerdict::clear);
+}
+
+// Edges that three faces and more have, and two that run along them the same way.
+TEST(self_contact, edges_that_are_not_manifold_are_decided) {
+  for (const std::uint32_t pages : {3U, 4U}) {
+    EXPECT_EQ(ask(meshes::book(pages), Scheme::catmark).verdict, SelfVerdict::clear) << pages;
+    EXPECT_EQ(ask(meshes::triangulated(meshes::book(pages)), Scheme::loop).verdict, SelfVerdict::clear)
+        << pages;
+  }
+  EXPECT_EQ(ask(meshes::moebius(9), Scheme::catmark).verdict, SelfVerdict::clear);
 }
 
 // Two faces with one vertex in common, in one plane, one turned against the other: they overlap, though each one's

@@ -554,6 +554,67 @@ TEST(self, verdicts_of_fans_at_a_flat_one_are_those_of_refined_ones) {
   EXPECT_GT(counts["in balance, clear, twin does not"], trials / 4);
 }
 
+// Sheets at one straight edge, whose faces run along it one way or the other; the first two of them at an angle that may be none.
+TEST(self, verdicts_of_books_are_those_of_refined_ones) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1) * testing::share(32));
+  std::mt19937_64 random(8);
+  std::map<std::string, int> counts;
+  for (int trial = 0; trial < trials; ++trial) {
+    const Scheme scheme = trial % 2 == 0 ? Scheme::loop : Scheme::catmark;
+    const std::size_t sheets = 3 + random() % 2;
+    const std::uint32_t rows = 2 + static_cast<std::uint32_t>(random() % 2);
+    const double amount = one_of({0.0, 0.1, 0.4, 0.9}, random), apart = one_of({0.0, 20.0, 90.0}, random);
+    oracle::TaggedMesh mesh;
+    for (std::uint32_t j = 0; j <= rows; ++j) mesh.points.push_back({0, 0, static_cast<double>(j)});
+    for (std::size_t k = 0; k < sheets; ++k) {
+      const double degrees = k == 0 ? 0 : apart + 90 * static_cast<double>(k - 1);
+      const double angle = std::numbers::pi / 180 * degrees;
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      for (std::uint32_t i = 1; i <= 2; ++i) {
+        for (std::uint32_t j = 0; j <= rows; ++j) {
+          oracle::Point p{i * std::cos(angle), i * std::sin(angle), static_cast<double>(j)};
+          for (double& x : p) x += amount * (unit(random) - 0.5);
+          mesh.points.push_back(p);
+        }
+      }
+      const auto at = [&](std::uint32_t i, std::uint32_t j) {
+        return i == 0 ? j : first + (i - 1) * (rows + 1) + j;
+      };
+      const bool turned = random() % 2 == 0;
+      const auto add = [&](std::vector<std::uint32_t> face) {
+        if (turned) std::reverse(face.begin(), face.end());
+        mesh.polygons.push_back(std::move(face));
+      };
+      for (std::uint32_t i = 0; i < 2; ++i) {
+        for (std::uint32_t j = 0; j < rows; ++j) {
+          const std::uint32_t a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+          if (scheme == Scheme::catmark) {
+            add({a, b, c, d});
+          } else {
+            add({a, b, c});
+            add({a, c, d});
+          }
+        }
+      }
+    }
+    const SelfContact found =
+        self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {}, {.max_splits = 20'000});
+    oracle::Rules rules;
+    rules.scheme = scheme == Scheme::loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+    const bool crossing = crosses(oracle::refine(mesh, rules, 4), 0.0015), same = apart == 0 && amount == 0;
+    ++counts[std::string(same ? "two are one, " : "") + name_of(found.verdict) +
+             (crossing ? ", twin crosses" : ", twin does not")];
+    if (crossing || same) {
+      EXPECT_NE(found.verdict, SelfVerdict::clear) << "trial " << trial;
+    }
+    if (amount == 0 && apart > 0) {
+      EXPECT_EQ(found.verdict, SelfVerdict::clear) << "trial " << trial;
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  EXPECT_GT(counts["clear, twin does not"], trials / 4);
+}
+
 // Two vertices of a refined mesh that are not one are in one place.
 bool coincide(const oracle::TaggedMesh& fine) {
   std::vector<oracle::Point> points = fine.points;

@@ -131,13 +131,11 @@ class VertexPairs {
     if (star.fan) {
       try_parts(star);
     } else {
-      for (const LevelStar& fan : complex_.fans(star)) {
+      const std::vector<LevelStar> fans = complex_.fans(star);
+      for (const LevelStar& fan : fans) {
         if (!fan.fan) continue;
-        if (is_injective(fan)) {
-          add_all(fan);
-        } else {
-          try_parts(fan);
-        }
+        try_whole(fan);
+        for (const LevelStar* other = fans.data(); other != &fan; ++other) try_both(*other, fan);
       }
     }
     for (const auto& a : star.sectors) {
@@ -166,6 +164,23 @@ class VertexPairs {
   }
   void add_all(const LevelStar& fan) {
     each_pair(fan, [&](const NamePair& pair) { found_.insert(pair); });
+  }
+  void try_whole(const LevelStar& fan) {
+    if (is_injective(fan)) {
+      add_all(fan);
+    } else {
+      try_parts(fan);
+    }
+  }
+  // Two fans with an edge in common, which more may have: one of them in a mirror if they run along it the same way.
+  void try_both(const LevelStar& a, LevelStar b) {
+    for (const bool mirrored : {false, true}) {
+      for (LevelStar::Sector& sector : b.sectors) sector.mirrored = mirrored;
+      LevelStar both{a.sectors};
+      both.sectors.insert(both.sectors.end(), b.sectors.begin(), b.sectors.end());
+      complex_.put_in_order(both);
+      if (both.fan) return try_whole(both);
+    }
   }
   // From each sector on as far as it holds.
   void try_parts(const LevelStar& fan) {

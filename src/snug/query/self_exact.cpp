@@ -109,7 +109,8 @@ int side_of(const Patch& piece, const Vector3& normal) {
 
 // The vertex that a sector is at, if it is one of the mesh; of faces that are patches, and where all around it is smooth, or sharp for ever.
 std::optional<VertexId> vertex_of(const LimitSurface& surface, const LevelStar::Sector& sector) {
-  const auto& [piece, centre] = sector;
+  const PieceName& piece = sector.piece;
+  const unsigned centre = sector.centre;
   if (surface.after_first_split(piece.patch) || !surface.kind(piece.patch).key().plain()) return std::nullopt;
   for (unsigned k = 0; k < piece.path.level(); ++k) {
     if (piece.path.digit(k) != centre) return std::nullopt;

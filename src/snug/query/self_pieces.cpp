@@ -11,7 +11,8 @@ namespace snug {
 
 std::vector<StarSector> sectors_of(PieceCache& pieces, const LevelStar& star) {
   std::vector<StarSector> sectors;
-  for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
+  for (const auto& sector : star.sectors)
+    sectors.push_back({&pieces.patch(sector.piece), sector.centre, sector.mirrored});
   return sectors;
 }
 

@@ -204,6 +204,8 @@ class TurnAround {
   double error_ = 0, angle_ = 0;
 };
 
+Point2 mirrored(Point2 p) { return {-p.x, p.y}; }
+
 // The vectors that a star is seen along.
 using Frame = std::array<Vector3, 2>;
 
@@ -235,7 +237,9 @@ Patch seen(const Patch& patch, const Frame& frame, double off) {
 std::array<Vector3, 2> spokes_of(const StarSector& sector) {
   const std::array<Vector3, 3> limits = limit_corners(*sector.patch);
   const Vector3 c = limits[sector.centre];
-  return {limits[(sector.centre + 1) % 3] - c, limits[(sector.centre + 2) % 3] - c};
+  std::array spokes{limits[(sector.centre + 1) % 3] - c, limits[(sector.centre + 2) % 3] - c};
+  if (sector.mirrored) std::swap(spokes[0], spokes[1]);
+  return spokes;
 }
 
 // A sector from where its nets come again at the centre; none where they do not.
@@ -335,7 +339,7 @@ void add_further_normals(const StarSector& sector, std::vector<Vector3>& normals
   add_of_rings(
       sector, 2,
       [&](const Patch& patch) {
-        const auto [a, b] = spokes_of({&patch, sector.centre});
+        const auto [a, b] = spokes_of({&patch, sector.centre, sector.mirrored});
         const Vector3 normal = cross(a, b);
         return std::vector{length(normal) > certain * length(a) * length(b) ? normal : Vector3{}};
       },
@@ -351,7 +355,10 @@ class StarCheck {
   [[nodiscard]] bool certainly_injective() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
     if (!make_frame() || (further_ && spike_)) return false;
-    for (const StarSector& sector : sectors_) flat_.push_back(seen(*sector.patch, frame_, frame_off_));
+    for (const StarSector& sector : sectors_) {
+      flat_.push_back(
+          seen(*sector.patch, sector.mirrored ? Frame{-frame_[0], frame_[1]} : frame_, frame_off_));
+    }
     // What costs least first.
     return sectors_turn(true) && border_turns_once() && sectors_turn(false);
   }
@@ -379,7 +386,7 @@ class StarCheck {
     std::set<std::size_t> places;  // in a fan from one edge around to itself
     for (const StarSector& sector : sectors_) {
       std::optional<Patch> patch = at_spike(sector);
-      if (!patch) return std::nullopt;
+      if (!patch || sector.mirrored) return std::nullopt;
       const CornerFan& fan = patch->kind->corner(patch->to_kind(sector.centre));
       if (!first) first = std::move(patch);
       const CornerFan& of_first = first->kind->corner(first->to_kind(sectors_[0].centre));
@@ -465,11 +472,17 @@ class StarCheck {
     each_border_edge([&](std::size_t s, unsigned edge) {
       const std::array<Vector3, 3> ends = limit_corners(flat_[s]);
       const Vector3 c = ends[sectors_[s].centre];
-      const auto at = [&](const Vector3& p) { return Point2{p.x - c.x, p.y - c.y}; };
-      add(at(ends[edge]), at(ends[(edge + 1) % 3]));
-      TurnAround::each_step(flat_[s], edge, [&](Point2 p, Point2 q) {
-        add(at({p.x, p.y, 0}), at({q.x, q.y, 0}));
-      });
+      const auto add_step = [&](Point2 from, Point2 to) {
+        const Point2 middle{c.x, c.y};
+        if (sectors_[s].mirrored) {
+          add(mirrored(to - middle), mirrored(from - middle));
+        } else {
+          add(from - middle, to - middle);
+        }
+      };
+      const auto flat = [](const Vector3& p) { return Point2{p.x, p.y}; };
+      add_step(flat(ends[edge]), flat(ends[(edge + 1) % 3]));
+      TurnAround::each_step(flat_[s], edge, add_step);
       return true;
     });
     Point2 mean, point;
@@ -495,14 +508,16 @@ class StarCheck {
     return point;
   }
 
-  // visit(sector, edge) of each, counter-clockwise; the centre of an open star is a point of its border, too.
+  // visit(sector, edge) of each, counter-clockwise, but that a mirrored sector's edge is run along clockwise; the centre of an open star
+  // is a point of its border, too.
   template <class Visit>
   bool each_border_edge(const Visit& visit) const {
     for (std::size_t s = 0; s < sectors_.size(); ++s) {
       const auto c = static_cast<unsigned>(sectors_[s].centre);
-      if (!closed_ && s == 0 && !visit(s, c)) return false;
+      const unsigned first = sectors_[s].mirrored ? (c + 2) % 3 : c, last = first == c ? (c + 2) % 3 : c;
+      if (!closed_ && s == 0 && !visit(s, first)) return false;
       if (!visit(s, (c + 1) % 3)) return false;
-      if (!closed_ && s + 1 == sectors_.size() && !visit(s, (c + 2) % 3)) return false;
+      if (!closed_ && s + 1 == sectors_.size() && !visit(s, last)) return false;
     }
     return true;
   }
@@ -519,7 +534,8 @@ class StarCheck {
       const double error = enlarged((weight_of(frame_) * gamma_bound(8) + 2 * frame_off_) *
                                         (max_abs(offset) + max_abs(centre)) +
                                     gamma_bound(2) * (largest_of(shift) + largest_of(point)));
-      return turn.add(flat_[s], edge, shift, error);
+      // Seen in a mirror a clockwise curve is a counter-clockwise one.
+      return turn.add(flat_[s], edge, sectors_[s].mirrored ? mirrored(shift) : shift, error);
     });
     return turns && turn.once();
   }

@@ -11,12 +11,14 @@ namespace snug {
 struct StarSector {
   const Patch* patch;
   std::size_t centre;  ///< its corner at the vertex
+  bool mirrored =
+      false;  ///< Are its corners clockwise in the star? As those of one of two faces that run along an edge the same way.
 };
 
 /// Is it proved that no two parameters of a star have one point?
 ///
-/// Sectors follow each other counter-clockwise: corner centre + 2 of one is corner centre + 1 of the next. A
-/// closed star ends where it begins; the centre of an open one lies on the border of the star.
+/// Sectors follow each other counter-clockwise: corner centre + 2 of one is corner centre + 1 of the next, with these two exchanged
+/// where a sector is mirrored. A closed star ends where it begins; the centre of an open one lies on the border of the star.
 ///
 /// Guarantee: true only if the star is injective, in exact arithmetic.
 /// Requires:  one origin for all patches is not needed; none is a polygon; edges in common have the same points.

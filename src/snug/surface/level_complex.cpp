@@ -201,20 +201,24 @@ LevelComplex::Ends LevelComplex::ends_of(const LevelStar::Sector& sector) const 
     const auto &from = at[sector.centre], &to = at[(sector.centre + k) % 3];
     return vertex(piece.patch, piece.path.level() + 1u, from[0] + to[0], from[1] + to[1]);
   };
+  if (sector.mirrored) return {middle(2), middle(1)};
   return {middle(1), middle(2)};
 }
 
 std::vector<LevelStar> LevelComplex::fans(const LevelStar& star) const {
   const std::size_t count = star.sectors.size();
-  std::unordered_map<LevelVertex, std::vector<std::uint32_t>, LevelVertexHash> at;
+  struct AtEdge {
+    std::vector<std::uint32_t> begin, end;
+  };
+  std::unordered_map<LevelVertex, AtEdge, LevelVertexHash> at;
   for (std::uint32_t s = 0; s < count; ++s) {
     const auto [begin, end] = ends_of(star.sectors[s]);
-    at[begin].push_back(s);
-    at[end].push_back(s);
+    at[begin].begin.push_back(s);
+    at[end].end.push_back(s);
   }
   DisjointSets sets(count);
   for (const auto& [edge, sectors] : at) {
-    if (sectors.size() == 2) sets.join(sectors[0], sectors[1]);
+    if (sectors.begin.size() == 1 && sectors.end.size() == 1) sets.join(sectors.begin[0], sectors.end[0]);
   }
   std::vector<LevelStar> fans;
   std::unordered_map<std::uint32_t, std::size_t> places;

@@ -26,6 +26,8 @@ struct LevelStar {
   struct Sector {
     PieceName piece;
     std::uint8_t centre;  ///< corner of the piece at the vertex
+    bool mirrored =
+        false;  ///< Are the piece's corners clockwise around the vertex, in a fan of faces that do not run the same way?
   };
   std::vector<Sector> sectors;
   bool closed = false;
@@ -53,7 +55,8 @@ class LevelComplex {
   [[nodiscard]] LevelStar star(const LevelVertex& vertex, unsigned level) const;
   /// Puts sectors at one vertex in order, if they are a fan: sets `fan` and `closed`.
   void put_in_order(LevelStar& star) const;
-  /// The sectors of a star as fans, each as large as it can be: across an edge that two of them alone are at.
+  /// The sectors of a star as fans, each as large as it can be: across an edge that two of them alone are
+  /// at, which run along it opposite ways.
   [[nodiscard]] std::vector<LevelStar> fans(const LevelStar& star) const;
 
  private:
