@@ -9,7 +9,9 @@ log = logging.getLogger("mkdocs.plugins.snug")
 
 def pages_of(folder, docs):
     paths = sorted((docs / folder).glob("*.md"), key=lambda path: (path.name not in ("index.md", "README.md"), path.name))
-    return [str(path.relative_to(docs)) for path in paths]
+    names = [str(path.relative_to(docs)) for path in paths]
+    # Pages of commands, whose headings are usages, by their names.
+    return [{path.stem: name} for path, name in zip(paths, names)] if folder == "command/" else names
 
 
 def expanded(nav, docs):

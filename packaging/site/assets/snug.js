@@ -4,4 +4,8 @@ document$.subscribe(() => {
   for (const area of document.querySelectorAll(".md-search__scrollwrap, .md-sidebar__scrollwrap, .md-typeset__scrollwrap, .md-typeset pre > code, .snug-tabs pre")) {
     area.tabIndex = 0;
   }
+  // An option is not torn apart at its hyphens.
+  for (const code of document.querySelectorAll(".md-typeset :not(pre) > code")) {
+    if (code.textContent.length <= 18) code.classList.add("snug-short");
+  }
 });
