@@ -1,8 +1,10 @@
 #ifdef _WIN32
 
 #include <io.h>
-#include <shellapi.h>
 #include <windows.h>
+
+// After it, whose words it uses.
+#include <shellapi.h>
 
 #include <cstdint>
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -102,8 +103,8 @@ TEST_F(judge, names_what_is_wrong_and_what_mends_it) {
 
   std::string fan = "v 0 0 1\n", faces;
   for (int k = 0; k < 40; ++k) {
-    fan += "v " + std::to_string(std::cos(k * M_PI / 20)) + ' ' + std::to_string(std::sin(k * M_PI / 20)) +
-           " 0\n";
+    fan += "v " + std::to_string(std::cos(k * std::numbers::pi / 20)) + ' ' +
+           std::to_string(std::sin(k * std::numbers::pi / 20)) + " 0\n";
     faces += "f 1 " + std::to_string(k + 2) + ' ' + std::to_string((k + 1) % 40 + 2) + '\n';
   }
   const auto cone = findings({write("fan.obj", fan + faces)});

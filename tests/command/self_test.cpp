@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "run_snug.h"
@@ -99,7 +100,7 @@ TEST(self_places, names_the_vertex_that_is_in_the_way) {
   const TemporaryFolder folder;
   std::string text = "v 0 0 1\n", faces;
   for (int k = 0; k < 128; ++k) {
-    const double angle = k * M_PI / 64;
+    const double angle = k * std::numbers::pi / 64;
     text += "v " + std::to_string(std::cos(angle)) + ' ' + std::to_string(std::sin(angle)) + " 0\n";
     faces += "f 1 " + std::to_string(k + 2) + ' ' + std::to_string((k + 1) % 128 + 2) + '\n';
   }

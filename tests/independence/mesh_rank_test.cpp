@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -147,7 +148,7 @@ std::optional<std::size_t> numerical_rank(Columns columns) {
 }
 
 double value_of(const std::vector<mpq_class>& polynomial, std::uint32_t order) {
-  const double t = 2 * std::cos(2 * M_PI / order);
+  const double t = 2 * std::cos(2 * std::numbers::pi / order);
   double value = 0;
   for (std::size_t i = polynomial.size(); i-- > 0;) value = value * t + polynomial[i].get_d();
   return value;
@@ -411,7 +412,7 @@ void expect_masks_of_refine(const Shape& shape, Scheme scheme) {
       for (const auto& [c, weight] : exact.row(VertexId(v))) {
         double value = weight.rational.get_d();
         for (const auto& [index, factor] : weight.cosines) {
-          value += factor.get_d() * 2 * std::cos(2 * M_PI * index / order);
+          value += factor.get_d() * 2 * std::cos(2 * std::numbers::pi * index / order);
         }
         weights[c] -= value;
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <queue>
 #include <stdexcept>
@@ -77,7 +78,7 @@ Real turns(const Vector& x, const std::vector<Part>& set) {
     const Real la = length(a), lb = length(b), lc = length(c);
     sum += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
   }
-  return sum / (2 * M_PIl);
+  return sum / (2 * std::numbers::pi_v<long double>);
 }
 
 struct Node {

@@ -19,9 +19,10 @@ class Field {
 
   // With a root of unity of each order that divides `order`.
   explicit Field(std::uint64_t order) : order_(order) {
-    mpz_class p = ((mpz_class(1) << 60) / order) * order + 1;
-    while (mpz_probab_prime_p(p.get_mpz_t(), 40) == 0) p += order;  // no composite below 2^64 passes
-    prime_ = p.get_ui();
+    const mpz_class step = static_cast<unsigned long>(order);  // 32 bits on Windows, as in get_ui()
+    mpz_class p = ((mpz_class(1) << 60) / step) * step + 1;
+    while (mpz_probab_prime_p(p.get_mpz_t(), 40) == 0) p += step;  // no composite below 2^64 passes
+    prime_ = std::uint64_t{mpz_class(p >> 32).get_ui()} << 32 | (p.get_ui() & 0xffffffffu);
     for (Element g = 2;; ++g) {
       root_ = power(g, (prime_ - 1) / order);
       bool generates = true;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -247,7 +248,7 @@ std::optional<int> LimitTwin::winding_number(const Point& point, int max_levels)
         for (Id k = 1; k + 1 < patch.corner_count; ++k)
           sum += solid_angle(corner[0] - point, corner[k] - point, corner[k + 1] - point);
       }
-      const double turns = sum / (4 * M_PI);
+      const double turns = sum / (4 * std::numbers::pi);
       if (std::abs(turns - std::round(turns)) > 1e-6)
         throw std::invalid_argument("oracle: the surface is not closed");
       return static_cast<int>(std::lround(turns));

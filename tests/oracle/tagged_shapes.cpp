@@ -1,6 +1,7 @@
 #include <oracle/tagged_shapes.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace oracle::meshes {
 
@@ -9,7 +10,7 @@ namespace {
 using Polygon = std::vector<std::uint32_t>;
 
 Point on_circle(std::uint32_t i, std::uint32_t n, double z) {
-  const double angle = 2 * M_PI * i / n;
+  const double angle = 2 * std::numbers::pi * i / n;
   return {std::cos(angle), std::sin(angle), z};
 }
 
@@ -109,7 +110,7 @@ TaggedMesh two_cubes_at_a_vertex() {
 TaggedMesh moebius(std::uint32_t n) {
   TaggedMesh mesh;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const double half = M_PI * i / n;
+    const double half = std::numbers::pi * i / n;
     for (const double t : {-0.5, 0.5}) {
       Point p = on_circle(i, n, t * std::sin(half));
       for (std::size_t x = 0; x < 2; ++x) p[x] *= 2 + t * std::cos(half);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -126,7 +127,7 @@ std::optional<int> WindingTwin::operator()(const Point& q) const {
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
       sum += solid_angle(first, from(polygon[k]), from(polygon[k + 1]));
   }
-  const double turns = sum / (4 * M_PI);
+  const double turns = sum / (4 * std::numbers::pi);
   const double rounded = std::round(turns);
   if (std::fabs(turns - rounded) > 1e-6) throw std::logic_error("the refined mesh is not closed");
   return static_cast<int>(rounded);

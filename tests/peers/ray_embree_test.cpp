@@ -16,6 +16,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -100,7 +101,7 @@ TEST(rays, first_meet_models_where_embree_does) {
       const EmbreeTriangles::Hit hit = triangles.nearest(from, direction);
       bool alike = hit.t == std::numeric_limits<double>::infinity() || hit.cosine > 0.2;
       for (int k = 0; k < 24 && alike; ++k) {
-        const double angle = M_PI / 4 * (k % 8), radius = (1 << (k / 8)) * error;
+        const double angle = std::numbers::pi / 4 * (k % 8), radius = (1 << (k / 8)) * error;
         const Point3 beside = from + (radius * std::cos(angle)) * across + (radius * std::sin(angle)) * other;
         const EmbreeTriangles::Hit near = triangles.nearest(beside, direction);
         alike = hit.t == near.t || (std::fabs(hit.t - near.t) < 30 * error && near.cosine > 0.2);

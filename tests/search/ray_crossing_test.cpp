@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numbers>
 
 namespace snug::ray_crossing_test {
 namespace {
@@ -85,7 +86,7 @@ std::optional<int> winding(const std::vector<Seen>& border, const Offset2& place
     if (std::hypot(ax, ay) < 2 * length + a.error) return {};
     sum += std::atan2(ax * by - ay * bx, ax * bx + ay * by);
   }
-  return static_cast<int>(std::lround(sum / (2 * M_PIl)));
+  return static_cast<int>(std::lround(sum / (2 * std::numbers::pi_v<long double>)));
 }
 
 void check(const Trial& trial, const RayFrame& ray, const Offset2& place, double reach,

@@ -7,12 +7,11 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <stdexcept>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <snug/mesh/control_mesh.h>
 #include <support/error.h>
@@ -57,9 +56,10 @@ inline void expect_same_arrays(const ControlMesh& a, const ControlMesh& b) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "snug-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
+    std::random_device device;
+    do {
+      path_ = std::filesystem::temp_directory_path() / ("snug-test-" + std::to_string(device()));
+    } while (!std::filesystem::create_directory(path_));
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   TemporaryFolder(const TemporaryFolder&) = delete;

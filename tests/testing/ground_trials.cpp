@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -95,7 +96,8 @@ TaggedMesh disc(Id n, Id rings, bool open) {
   const Id around = open ? n + 1 : n;
   for (Id r = 1; r <= rings; ++r)
     for (Id i = 0; i < around; ++i) {
-      const double angle = 2 * M_PI * i / (open ? n + n / 3 : n), radius = static_cast<double>(r) / rings;
+      const double angle = 2 * std::numbers::pi * i / (open ? n + n / 3 : n),
+                   radius = static_cast<double>(r) / rings;
       mesh.points.push_back({radius * std::cos(angle), radius * std::sin(angle),
                              0.3 * (1 - radius) + 0.15 * radius * std::sin(3 * angle)});
     }

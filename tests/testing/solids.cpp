@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
@@ -25,7 +26,8 @@ TaggedMesh torus(Id m, Id n) {
   TaggedMesh mesh;
   for (Id i = 0; i < m; ++i) {
     for (Id j = 0; j < n; ++j) {
-      const double u = 2 * M_PI * i / m, v = 2 * M_PI * j / n, r = 2 + 0.8 * std::cos(v);
+      const double u = 2 * std::numbers::pi * i / m, v = 2 * std::numbers::pi * j / n,
+                   r = 2 + 0.8 * std::cos(v);
       mesh.points.push_back({r * std::cos(u), r * std::sin(u), 0.8 * std::sin(v)});
       const Id k = (i + 1) % m, l = (j + 1) % n;
       mesh.polygons.push_back({i * n + j, k * n + j, k * n + l, i * n + l});
