@@ -12,7 +12,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const colours = () =>
   dark.matches
     ? { parts: [0x4f9fd0, 0xf2b673], cage: 0xdfe7ed, enclosure: 0xb9c8d2 }
-    : { parts: [0x1d5f8a, 0xe39a4f], cage: 0x16202a, enclosure: 0x33424e };
+    : { parts: [0x4787b8, 0xe39a4f], cage: 0x16202a, enclosure: 0x33424e };
 
 // One for each shape, which several parts may have: disposing of it frees what the next picture makes again.
 const geometries = new WeakMap();
