@@ -100,9 +100,16 @@ int open_to_read(const std::string& path) {
 int open_to_write(const std::string& path) {
   return ::_wopen(name_of(path).c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
 }
+// Shared with whoever removes it, as remove_unfinished_files() does while it is open; _wopen() does not.
 int create(const std::string& path, unsigned permissions) {
-  const int mode = (permissions & 0200u) != 0 ? _S_IREAD | _S_IWRITE : _S_IREAD;
-  return ::_wopen(name_of(path).c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT, mode);
+  const HANDLE handle = ::CreateFileW(
+      name_of(path).c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
+      CREATE_NEW, (permissions & 0200u) != 0 ? FILE_ATTRIBUTE_NORMAL : FILE_ATTRIBUTE_READONLY, nullptr);
+  if (handle == INVALID_HANDLE_VALUE) return failed_as_windows_says();
+  const int descriptor = ::_open_osfhandle(reinterpret_cast<std::intptr_t>(handle),
+                                           _O_BINARY | _O_NOINHERIT);  // NOLINT: as above
+  if (descriptor < 0) ::CloseHandle(handle);
+  return descriptor;
 }
 std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) {
   as_bytes(descriptor);
@@ -144,6 +151,7 @@ int truncate(int descriptor, std::uint64_t size) {
   return -1;
 }
 int close(int descriptor) noexcept { return ::_close(descriptor); }
+// An open file is gone for others at once, and its name when it is closed.
 int remove(const char* path) noexcept {
   return ::DeleteFileW(name_of(path).c_str()) ? 0 : failed_as_windows_says();
 }

@@ -1,7 +1,9 @@
 #include <support/atomic_file.h>
 
 #include <csignal>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -12,7 +14,7 @@
 
 #include <testing/files.h>
 
-// Pipes, devices, links, permissions and limits of POSIX.
+// Pipes, devices, links, permissions and limits of POSIX, and signals: on Windows an open file that was removed keeps its name until it is closed.
 namespace snug::atomic_file_posix_test {
 namespace {
 
@@ -24,6 +26,21 @@ unsigned permissions(const std::string& path) {
   struct stat status {};
   EXPECT_EQ(::stat(path.c_str(), &status), 0);
   return status.st_mode & 0777u;
+}
+
+TEST(atomic_file, a_handler_of_signals_finds_what_is_unfinished) {
+  const TemporaryFolder folder;
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (int i = 0; i < 60; ++i) {
+    files.push_back(std::make_unique<AtomicFile>(folder.file(std::to_string(i))));
+    files.back()->write("x");
+    if (i % 3 == 0) files.back()->commit();
+    if (i % 3 == 1) files.back().reset();
+  }
+  EXPECT_EQ(folder.entries(), 40u);
+  remove_unfinished_files();
+  EXPECT_EQ(folder.entries(), 20u);
+  for (int i = 0; i < 60; i += 3) EXPECT_EQ(read_file(folder.file(std::to_string(i))), "x");
 }
 
 TEST(atomic_file, a_trial_leaves_everything_as_it_was) {

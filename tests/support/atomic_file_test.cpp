@@ -1,8 +1,6 @@
 #include <support/atomic_file.h>
 
-#include <memory>
 #include <string>
-#include <vector>
 
 #include <support/read_file.h>
 
@@ -57,21 +55,6 @@ TEST(atomic_file, is_not_in_place_before_the_commit_though_complete) {
   EXPECT_EQ(read_file(folder.file("out")), "all");
   EXPECT_THROW(file.write("more"), InputError);
   EXPECT_THROW(file.commit(), InputError);
-}
-
-TEST(atomic_file, a_handler_of_signals_finds_what_is_unfinished) {
-  const TemporaryFolder folder;
-  std::vector<std::unique_ptr<AtomicFile>> files;
-  for (int i = 0; i < 60; ++i) {
-    files.push_back(std::make_unique<AtomicFile>(folder.file(std::to_string(i))));
-    files.back()->write("x");
-    if (i % 3 == 0) files.back()->commit();
-    if (i % 3 == 1) files.back().reset();
-  }
-  EXPECT_EQ(folder.entries(), 40u);
-  remove_unfinished_files();
-  EXPECT_EQ(folder.entries(), 20u);
-  for (int i = 0; i < 60; i += 3) EXPECT_EQ(read_file(folder.file(std::to_string(i))), "x");
 }
 
 TEST(atomic_file, bad_targets_are_errors_at_once) {
