@@ -671,7 +671,7 @@ TEST(star, at_a_boundary_over_a_wide_angle_is_injective) {
 bool turns_over(const std::vector<StarSector>& sectors) {
   constexpr std::array shares{0.0, 1e-6, 1e-3, 0.25, 0.5, 0.75, 1 - 1e-3, 1 - 1e-6, 1.0};
   bool up = false, down = false;
-  for (const auto& [patch, centre] : sectors) {
+  for (const auto& [patch, centre, mirrored] : sectors) {
     for (int level = 0; level <= 16; ++level) {
       for (const double share : shares) {
         std::array<double, 3> at{};
@@ -921,7 +921,7 @@ TEST(star, at_a_spike_that_turns_over_is_never_injective) {
       const bool proved = certainly_injective(star.sectors, star.closed);
       // Its direction: from the vertex to the middle of what is around it, far down.
       Vector3 along;
-      for (const auto& [patch, centre] : star.sectors) {
+      for (const auto& [patch, centre, mirrored] : star.sectors) {
         Patch deep = *patch;
         Vector3 spoke;
         for (int k = 0; k < 80; ++k) {
@@ -939,7 +939,7 @@ TEST(star, at_a_spike_that_turns_over_is_never_injective) {
         along = along + spoke;
       }
       bool up = false, down = false;
-      for (const auto& [patch, centre] : star.sectors) {
+      for (const auto& [patch, centre, mirrored] : star.sectors) {
         for (int step = 0; step <= 14; ++step) {
           for (int i = 0; i <= 8; ++i) {
             std::array<double, 3> at{};
