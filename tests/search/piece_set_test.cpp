@@ -6,6 +6,7 @@
 #include <snug/search/feet.h>
 #include <testing/scheme_surfaces.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -73,6 +74,83 @@ TEST(piece_set, are_the_surface_up_to_their_errors) {
     EXPECT_EQ(same.size(), finer.size());
     EXPECT_EQ(PieceSet(surface, 1e-2, 1, {}, 1).size(), 0u);
   });
+}
+
+// As refine() makes them, whatever order patches have.
+TEST(piece_set, of_some_patches_are_made_finer_by_name) {
+  std::mt19937_64 random(10);
+  testing::for_each_surface(3, [&](const testing::NamedSurface& named) {
+    SCOPED_TRACE(named.name);
+    const LimitSurface& surface = named.surface;
+    PieceSet all(surface, 1e-2, 1);
+    if (all.size() == 0) return;
+    std::vector<std::uint8_t> which(all.size());
+    PieceSet::FinerPieces finer;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      which[i] = random() % 2;
+      if (which[i] != 0) finer[all.name(i)] = 1e-4;
+    }
+    ASSERT_FALSE(all.refine(which, 1e-4, 1).empty());
+    std::map<PieceName, QuadraticTriangle> known;
+    for (std::size_t i = 0; i < all.size(); ++i) known[all.name(i)] = all[i];
+    std::vector<PatchId> patches;
+    for (std::size_t p = surface.patch_count(); p-- > 0;) {
+      if (surface.has_patch(PatchId(p))) patches.push_back(PatchId(p));
+    }
+    std::size_t count = 0;
+    const std::size_t half = (patches.size() + 1) / 2;
+    for (std::size_t begin = 0; begin < patches.size(); begin += half) {
+      const std::span some = std::span(patches).subspan(begin, std::min(half, patches.size() - begin));
+      const PieceSet set(surface, some, 1e-2, finer, 2, {}, UINT64_MAX);
+      count += set.size();
+      const Box3 box = set.box();
+      for (std::size_t i = 0; i < set.size(); ++i) {
+        const QuadraticTriangle& same = known.at(set.name(i));
+        EXPECT_EQ(points_of(set[i]), points_of(same));
+        EXPECT_LE(std::fabs(set[i].error - same.error), 1e-300);
+        const Point3 p = point_of(same, testing::random_parameter(random));
+        for (std::size_t a = 0; a < 3; ++a) {
+          EXPECT_LE(box.lower[a], p[a] - same.error);
+          EXPECT_GE(box.upper[a], p[a] + same.error);
+        }
+      }
+      EXPECT_EQ(PieceSet(surface, some, 1e-2, finer, 1, {}, set.size() - 1).size(), 0u);
+    }
+    EXPECT_EQ(count, all.size());
+  });
+}
+
+// By names, or three points in a row: the same as quadratics without bends.
+TEST(piece_set, of_triangles_are_where_their_points_are) {
+  std::mt19937_64 random(12);
+  const auto unit = [&] { return testing::unit(random); };
+  std::vector<Point3> points;
+  for (int i = 0; i < 90; ++i) points.push_back({unit(), unit(), unit()});
+  std::vector<std::array<std::uint32_t, 3>> names;
+  for (std::uint32_t i = 0; i < 30; ++i) names.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  const PowerOfTwo half(-1);
+  PieceSet named(points, names, half), in_a_row(points, {}, half);
+  std::vector<QuadraticTriangle> flat;
+  for (const auto& [a, b, c] : names)
+    flat.push_back(flat_quadratic({half.apply(points[a]), half.apply(points[b]), half.apply(points[c])}));
+  PieceSet given(flat);
+  for (PieceSet* const set : {&named, &in_a_row, &given}) set->prepare(1);
+  ASSERT_EQ(named.size(), 30u);
+  ASSERT_EQ(in_a_row.size(), 30u);
+  for (std::size_t i = 0; i < 30; ++i) {
+    EXPECT_EQ(points_of(named[i]), points_of(flat[i]));
+    EXPECT_EQ(points_of(in_a_row[i]), points_of(flat[i]));
+    EXPECT_EQ(named.error(i), 0);
+  }
+  for (int trial = 0; trial < 100; ++trial) {
+    const Point3 p{unit(), unit(), unit()};
+    const QuadraticFoot foot = nearest_foot(given, p);
+    for (const PieceSet* const set : {&named, &in_a_row}) {
+      const QuadraticFoot same = nearest_foot(*set, p);
+      EXPECT_EQ(same.piece, foot.piece);
+      EXPECT_EQ(same.point, foot.point);
+    }
+  }
 }
 
 TEST(piece_set, of_triangles_stays_as_it_is) {

@@ -236,6 +236,57 @@ TEST(self_contact, of_some_triangles_are_those_of_all_that_name_one) {
   EXPECT_GT(left_out, 20u);
 }
 
+// So many that they are compared part by part: each pair is found as if the two were alone, wherever they lie.
+TEST(self_contact, of_many_triangles_are_those_of_each_pair) {
+  constexpr std::uint32_t side = 70;  // 9,800 triangles of a sheet
+  Mesh mesh;
+  for (std::uint32_t j = 0; j <= side; ++j) {
+    for (std::uint32_t i = 0; i <= side; ++i) mesh.points.push_back({1.0 * i / side, 1.0 * j / side, 0});
+  }
+  const auto name = [](std::uint32_t i, std::uint32_t j) { return j * (side + 1) + i; };
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i) {
+      mesh.triangles.push_back({name(i, j), name(i + 1, j), name(i, j + 1)});
+      mesh.triangles.push_back({name(i + 1, j), name(i + 1, j + 1), name(i, j + 1)});
+    }
+  }
+  const auto sheet = static_cast<std::uint32_t>(mesh.triangles.size());
+  std::mt19937_64 random(3);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (std::uint32_t t = 0; t < 300; ++t) {
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    const Point3 o{unit(), unit(), 0.01 * (unit() - 0.7)};
+    for (int k = 0; k < 3; ++k)
+      mesh.points.push_back({o.x + 0.012 * unit(), o.y + 0.012 * unit(), o.z + 0.012 * unit()});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto extents = [&](std::uint32_t t) {
+    Box3 box;
+    for (const std::uint32_t v : mesh.triangles[t]) box.add(mesh.points[v]);
+    return box;
+  };
+  std::vector<TrianglePair> expected;
+  for (std::uint32_t b = sheet; b < mesh.triangles.size(); ++b) {
+    for (std::uint32_t a = 0; a < b; ++a) {
+      const Box3 of_a = extents(a), of_b = extents(b);
+      bool near = true;
+      for (std::size_t k = 0; k < 3; ++k)
+        near = near && of_a.lower[k] <= of_b.upper[k] && of_b.lower[k] <= of_a.upper[k];
+      if (!near) continue;
+      for (const TrianglePair& pair :
+           self_contacts(mesh.points, std::vector<Names>{mesh.triangles[a], mesh.triangles[b]}, 3, 1))
+        expected.push_back({a, b, pair.contact});
+    }
+  }
+  std::sort(expected.begin(), expected.end());
+  EXPECT_GT(expected.size(), 100u);
+  EXPECT_EQ(self_contacts(mesh.points, mesh.triangles, 100'000, 2), expected);
+  // Those of the single triangles alone.
+  std::vector<std::uint8_t> wanted(mesh.triangles.size());
+  std::fill(wanted.begin() + sheet, wanted.end(), std::uint8_t{1});
+  EXPECT_EQ(self_contacts(mesh.points, mesh.triangles, 100'000, 1, {}, wanted), expected);
+}
+
 // Triangles of a large fan that turns once are not compared with each other. Fans that are open, closed, or go around more than once; flat,
 // cones, and with some triangles turned over; two of them with a common rim; beside triangles that pass through them.
 TEST(self_contact, of_large_fans_are_those_of_each_pair) {

@@ -13,6 +13,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/hausdorff.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/piece_cache.h>
 #include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>
@@ -44,7 +45,7 @@ ComparedSet compared(const LimitSurface& surface, PowerOfTwo scale, double error
   ComparedSet set{
       {surface, error, run.threads, stop_only(run), UINT64_MAX, scale * surface.scale().inverse()}};
   for (std::size_t i = 0; i < set.pieces.size(); ++i) {
-    if (!std::isfinite(set.pieces[i].error)) {
+    if (!std::isfinite(set.pieces.error(i))) {
       throw InputError(InputProblem::unrepresentable,
                        "deviation: a patch of the surface does not fit doubles; scale the mesh");
     }
@@ -53,12 +54,9 @@ ComparedSet compared(const LimitSurface& surface, PowerOfTwo scale, double error
   return set;
 }
 
-ComparedSet compared(std::span<const Triangle> triangles, PowerOfTwo scale, const Run& run) {
-  Blocks<QuadraticTriangle> flat;
-  for (const Triangle& t : triangles) {
-    flat.push_back(flat_quadratic({scale.apply(t[0]), scale.apply(t[1]), scale.apply(t[2])}));
-  }
-  ComparedSet set{PieceSet(std::move(flat))};
+ComparedSet compared(std::span<const Point3> points, std::span<const std::array<std::uint32_t, 3>> triangles,
+                     PowerOfTwo scale, const Run& run) {
+  ComparedSet set{PieceSet(points, triangles, scale)};
   set.pieces.prepare(run.threads);
   return set;
 }
@@ -302,16 +300,15 @@ Deviation compare(const SurfaceBvh& model, ComparedSet surface, ComparedSet cand
   return result;
 }
 
-double largest_coordinate(std::span<const Triangle> triangles) {
+// Of points, three a triangle in the messages.
+double largest_coordinate(std::span<const Point3> points) {
   double largest = 0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    for (const Point3& p : triangles[i]) {
-      if (!is_finite(p)) {
-        throw InputError(InputProblem::value, "deviation: a corner of triangle " + std::to_string(i) +
-                                                  " of the candidate is not finite; give three numbers");
-      }
-      largest = std::max(largest, max_abs(p - Point3{}));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_finite(points[i])) {
+      throw InputError(InputProblem::value, "deviation: a corner of triangle " + std::to_string(i / 3) +
+                                                " of the candidate is not finite; give three numbers");
     }
+    largest = std::max(largest, max_abs(points[i] - Point3{}));
   }
   return largest;
 }
@@ -331,17 +328,24 @@ const char* name_of(DeviationVerdict verdict) { return name_in(verdict_names, ve
 
 Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
                     const DeviationOptions& options, const Run& run) {
-  const SurfaceBvh& model = surface.data()->bvh();
   require_value(!candidate.empty(), "deviation: the candidate has no triangles");
   require_value(candidate.size() < WideBvh::leaf_bit,
                 "deviation: the candidate has more than 2^31 triangles; compare parts of it");
-  const double largest = largest_coordinate(candidate);
+  static_assert(sizeof(Triangle) == 3 * sizeof(Point3));
+  return deviation(surface, {candidate.front().data(), 3 * candidate.size()}, {}, options, run);
+}
+
+Deviation deviation(const Surface& surface, std::span<const Point3> points,
+                    std::span<const std::array<std::uint32_t, 3>> triangles, const DeviationOptions& options,
+                    const Run& run) {
+  const SurfaceBvh& model = surface.data()->bvh();
+  const double largest = largest_coordinate(points);
   // Zero fits any scale.
   const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : model.surface().scale();
   const ScaledOptions asked(options, model.surface(), own);
   require_closed_if_solid(model, options);
   return compare(model, compared(model.surface(), asked.scale, asked.first_error(), run),
-                 compared(candidate, asked.scale, run), asked, options, run);
+                 compared(points, triangles, asked.scale, run), asked, options, run);
 }
 
 Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,

@@ -454,7 +454,7 @@ class EnvelopeMaker {
   [[nodiscard]] double farthest(const Triangle& t, const QuadraticFoot& foot) const {
     double far = 0;
     for (const Point3& p : t) far = std::max(far, distance(p, foot.point));
-    return enlarged(far + pieces_.set[foot.piece].error) + distance_rounding;
+    return enlarged(far + pieces_.set.error(foot.piece)) + distance_rounding;
   }
   // The same of points in parts of it: about the least such bound.
   [[nodiscard]] double bridge_distance(const Triangle& t, const QuadraticFoot& foot, int halvings) const {

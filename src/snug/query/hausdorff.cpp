@@ -166,7 +166,7 @@ class Chunk {
         std::max_element(part.feet.begin(), part.feet.end(),
                          [](const auto& x, const auto& y) { return x.distance < y.distance; }) -
         part.feet.begin());
-    const double error = other_[part.feet[k].piece].error;
+    const double error = other_.error(part.feet[k].piece);
     if ((part.tried >> k & 1u) != 0) return false;
     if (!(part.feet[k].distance - error > found_.lower + options_.precision / 16)) return false;
     part.tried = static_cast<std::uint8_t>(part.tried | 1u << k);
@@ -229,7 +229,7 @@ class Chunk {
     for (std::size_t k = 0; k < 3; ++k) at_middles[k] = distance(quadratic_.middles[k], there.middles[k]);
     const auto most = std::max_element(at_middles.begin(), at_middles.end());
     const double geometric = std::max(at_corners, *most),
-                 errors = set_[part.piece].error + other_[feet[0].piece].error,
+                 errors = set_.error(part.piece) + other_.error(feet[0].piece),
                  upper = enlarged(geometric + errors) + distance_rounding;
     if (upper < now_.upper) {
       now_ = {.upper = upper,
@@ -321,8 +321,9 @@ class CornerFeet {
     std::vector<std::uint32_t> table(size, UINT32_MAX);
     names_.resize(3 * pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const Triangle corners = set[pieces[i]].corners;
       for (std::size_t k = 0; k < 3; ++k) {
-        const Point3& p = set[pieces[i]].corners[k];
+        const Point3& p = corners[k];
         std::size_t slot = hash(p) & (size - 1);
         while (table[slot] != UINT32_MAX && !(points_[table[slot]] == p)) slot = (slot + 1) & (size - 1);
         if (table[slot] == UINT32_MAX) {
@@ -418,7 +419,7 @@ double farthest_from_a_point(const PieceSet& set, std::span<const std::uint32_t>
       }
     }
   }
-  return enlarged(most + other[0].error) + distance_rounding;
+  return enlarged(most + other.error(0)) + distance_rounding;
 }
 
 void merge(Farthest& all, const Farthest& part) {

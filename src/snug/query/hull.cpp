@@ -2,15 +2,18 @@
 #include <snug/search/surface_data.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <mutex>
+#include <numeric>
 #include <set>
 #include <span>
 #include <string>
 #include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include <snug/contacts.h>
@@ -34,6 +37,7 @@
 #include <support/names.h>
 #include <support/parallel.h>
 #include <support/run.h>
+#include <support/system_files.h>
 
 namespace snug {
 namespace {
@@ -146,30 +150,71 @@ std::uint64_t max_pieces(const LimitSurface& surface, const Run& run) {
   return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
 }
 
-// The quadratics that facets are kept off.
-struct NearPieces {
-  PieceSet& first;  // for both sides, once one of them has triangles enough to be kept off them
-  PieceSet all{};
-  std::vector<std::uint8_t> marks{};  // those that facets come near
-
-  // False if there would be too many.
-  [[nodiscard]] bool begin_round(const LimitSurface& surface, double error, const Run& run) {
-    if (first.size() == 0) {
-      first = PieceSet(surface, error, run.threads, *run.monitor, max_pieces(surface, run));
-      if (first.size() == 0) return false;
-      first.prepare(run.threads);
+// The quadratics that facets are kept off. All together would take a third of the memory: they are made where they are looked at, for
+// a few patches that lie together at a time.
+class NearPieces {
+ public:
+  // Errors are at most `error`, in scaled units, where refine() does not make them less.
+  NearPieces(const LimitSurface& surface, double error, const Run& run)
+      : surface_(surface), error_(error), run_(run), max_(max_pieces(surface, run)) {
+    std::vector<PatchId> there;
+    std::vector<Point3> centres;
+    for (std::size_t i = 0; i < surface.patch_count(); ++i) {
+      const PatchId patch(i);
+      if (!surface.has_patch(patch)) continue;
+      there.push_back(patch);
+      centres.push_back(surface.patch(patch).origin);
     }
-    if (all.size() == 0) all = first;
-    marks.assign(all.size(), 0);
-    return true;
+    for (const std::uint32_t i : in_order_of_place(centres, run.threads)) patches_.push_back(there[i]);
+    boxes_.resize(std::min(patches_.size(), max_blocks));
   }
-  // Makes finer what is marked. False if there would be too many.
-  [[nodiscard]] bool refine(const LimitSurface& surface, double error, const Run& run) {
-    if (std::all_of(marks.begin(), marks.end(), [](auto mark) { return mark == 0; })) return true;
-    if (all.refine(marks, error, run.threads, *run.monitor, max_pieces(surface, run)).empty()) return false;
-    all.prepare(run.threads);
-    return true;
+
+  // Calls visit(set, box) for sets of pieces in boxes for which is_near(box): on several threads, and not for all of them if
+  // there are too many; then it is false.
+  template <class IsNear, class Visit>
+  [[nodiscard]] bool visit(const IsNear& is_near, const Visit& visit) {
+    std::atomic<std::uint64_t> count{0};
+    parallel_for(boxes_.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        run_.monitor->checkpoint();
+        if ((boxes_[b] && !is_near(*boxes_[b])) || count.load(std::memory_order_relaxed) > max_) continue;
+        const std::size_t first = b * patches_.size() / boxes_.size(),
+                          last = (b + 1) * patches_.size() / boxes_.size();
+        PieceSet set(surface_, std::span(patches_).subspan(first, last - first), error_, finer_, 1,
+                     *run_.monitor, max_);
+        count.fetch_add(set.size() > 0 ? set.size() : max_ + 1, std::memory_order_relaxed);
+        if (set.size() == 0) continue;
+        set.prepare(1);
+        boxes_[b] = set.box();
+        if (is_near(*boxes_[b])) visit(set, *boxes_[b]);
+      }
+    });
+    return count.load() <= max_;
   }
+  // To be made finer. Those that are marked, each once, in their order.
+  void mark(const std::vector<PieceName>& pieces) {
+    marked_.insert(marked_.end(), pieces.begin(), pieces.end());
+  }
+  [[nodiscard]] const std::vector<PieceName>& marked() {
+    std::sort(marked_.begin(), marked_.end());
+    return marked_;
+  }
+  void refine(double error) {
+    for (const PieceName& name : marked_) finer_[name] = error;
+    marked_.clear();
+  }
+
+ private:
+  static constexpr std::size_t max_blocks = 16;
+
+  const LimitSurface& surface_;
+  double error_;
+  const Run& run_;
+  std::uint64_t max_;
+  std::vector<PatchId> patches_;            // block by block
+  std::vector<std::optional<Box3>> boxes_;  // of the blocks, once they are known
+  PieceSet::FinerPieces finer_;
+  std::vector<PieceName> marked_;
 };
 
 // Triangles around each vertex.
@@ -192,6 +237,50 @@ class TrianglesAround {
 
  private:
   std::vector<std::uint32_t> begins_, triangles_;
+};
+
+// Marked triangles by boxes around them, and around some in a row, which mostly lie together.
+class FacetRows {
+ public:
+  // `corners(t)`: of triangle t. Boxes are larger than the triangles by `growth` times their longest sides.
+  template <class CornersOf>
+  FacetRows(std::span<const std::uint8_t> marks, double growth, const CornersOf& corners)
+      : marks_(marks), growth_(growth), corners_(corners), rows_((marks.size() + row - 1) / row) {
+    for (std::size_t t = 0; t < marks.size(); ++t) {
+      if (marks[t] != 0) rows_[t / row].add(box(t));
+    }
+  }
+  [[nodiscard]] bool meet(const Box3& box) const {
+    return std::any_of(rows_.begin(), rows_.end(), [&](const Box3& r) { return overlap(r, box); });
+  }
+  template <class Visit>
+  void visit(const Box3& box, const Visit& visit) const {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      if (!overlap(rows_[r], box)) continue;
+      for (std::size_t t = r * row; t < std::min(marks_.size(), (r + 1) * row); ++t) {
+        if (marks_[t] != 0 && overlap(this->box(t), box)) visit(t);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t row = 64;
+
+  [[nodiscard]] Box3 box(std::size_t t) const {
+    Box3 box;
+    for (const Point3& p : corners_(t)) box.add(p);
+    const double more = growth_ * longest_side(box);
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lower[k] -= more;
+      box.upper[k] += more;
+    }
+    return box;
+  }
+
+  std::span<const std::uint8_t> marks_;
+  double growth_;
+  std::function<Triangle(std::size_t)> corners_;
+  std::vector<Box3> rows_;
 };
 
 struct SurfacePlace {
@@ -250,36 +339,40 @@ class OwnContacts {
 };
 
 // Facets of earlier rounds that were found off the surface, and each two of them off each other: as long as their corners stay
-// where they are they need not be compared again.
+// where they are they need not be compared again. Known by their hashes: what a wrong one leaves out is found where the hull is verified.
 class KnownFacets {
  public:
   [[nodiscard]] bool contains(const Triangle& facet) const {
-    return !known_.empty() && known_.contains(facet);
+    return std::binary_search(known_.begin(), known_.end(), hash_of(facet));
   }
-  void clear() { known_.clear(); }
-  void add(const Triangle& facet) { known_.insert(facet); }
+  // Those that are marked, and no others.
+  template <class FacetOf>
+  void assign(std::span<const std::uint8_t> marks, const FacetOf& facet) {
+    known_.clear();
+    for (std::size_t t = 0; t < marks.size(); ++t) {
+      if (marks[t] != 0) known_.push_back(hash_of(facet(t)));
+    }
+    std::sort(known_.begin(), known_.end());
+  }
 
  private:
-  struct Hash {
-    std::size_t operator()(const Triangle& facet) const {
-      std::uint64_t hash = 0;
-      for (const Point3& p : facet) {
-        for (const double x : {p.x, p.y, p.z}) {
-          hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
-          hash ^= hash >> 29;
-        }
+  static std::uint64_t hash_of(const Triangle& facet) {
+    std::uint64_t hash = 0;
+    for (const Point3& p : facet) {
+      for (const double x : {p.x, p.y, p.z}) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
       }
-      return hash;
     }
-  };
-  std::unordered_set<Triangle, Hash> known_;
+    return hash;
+  }
+  std::vector<std::uint64_t> known_;
 };
 
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
  public:
-  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner, PieceSet& pieces,
-          const Run& run)
+  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner, const Run& run)
       : surface_(surface),
         options_(options),
         inner_(inner),
@@ -289,7 +382,7 @@ class OneHull {
              .max_splits = run.max_splits.value_or(default_splits::hull)},
         scale_(surface.scale()),
         tolerances_(surface, std::vector<double>(surface.owner_count(), first_share * *options.error)),
-        pieces_{pieces} {}
+        pieces_(surface, quadratic_share * first_share * scale_.apply(*options.error), run_) {}
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left; where the surface goes
   // through itself, which is asked after some rounds, only that.
@@ -303,9 +396,7 @@ class OneHull {
       }
       move_vertices(made.errors);
       if (!whole_mesh() && !problems_.empty()) break;
-      const double error = quadratic_share * first_share * scale_.apply(*options_.error);
-      if (!pieces_.begin_round(surface_, error, run_) && !blame_budget()) break;
-      if (!facets_.any_turned) keep_off();
+      if (!facets_.any_turned && !keep_off() && !blame_budget()) break;
       if (problems_.empty()) break;
       if (round >= asked_from && !contacts.through().empty()) {
         problems_.clear();
@@ -331,6 +422,8 @@ class OneHull {
  private:
   void begin_round(LocalTessellation& made) {
     mesh_ = std::move(made.mesh);
+    mesh_.parameters = {};
+    system_files::return_free_memory();
     parts_ = std::move(made.parts);
     around_.emplace(mesh_);
     allowed_.resize(parts_.size());
@@ -499,34 +592,35 @@ class OneHull {
     }
   }
 
-  // Facets that may meet the surface, or each other.
-  void keep_off() {
+  // Facets that may meet the surface, or each other. False if the budget does not allow for the pieces.
+  [[nodiscard]] bool keep_off() {
     const std::size_t count = mesh_.triangles.size();
-    std::vector<std::uint8_t> meets(count), changed(count), clear(count);
-    parallel_for(count, run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        if (t % 256 == 0) monitor_.checkpoint();
-        changed[t] = !known_.contains(scaled(facets_.positions, mesh_.triangles[t]));
-        // There is no position, or none that is near enough.
-        if (wrong_owners_[mesh_.owners[t]] != 0) continue;
-        clear[t] = 1;
-        if (changed[t] == 0) continue;
-        const double flat = flat_share * scale_.apply(allowed_[t]);
-        meets[t] = may_meet(pieces_.all, facet(t), flat);
-      }
-    });
+    std::vector<std::uint8_t> changed(count), asked(count), clear(count);
     for (std::size_t t = 0; t < count; ++t) {
-      if (meets[t] == 0) continue;
+      changed[t] = !known_.contains(scaled(facets_.positions, mesh_.triangles[t]));
+      // Else there is no position, or none that is near enough.
+      clear[t] = wrong_owners_[mesh_.owners[t]] == 0;
+      asked[t] = clear[t] & changed[t];
+    }
+    std::vector<std::atomic<bool>> meets(count);
+    const FacetRows rows(asked, 0,
+                         [&](std::size_t t) { return scaled(facets_.positions, mesh_.triangles[t]); });
+    const bool whole = pieces_.visit([&](const Box3& box) { return rows.meet(box); },
+                                     [&](const PieceSet& set, const Box3& box) {
+                                       rows.visit(box, [&](std::size_t t) {
+                                         if (!meets[t].load(std::memory_order_relaxed) &&
+                                             may_meet(set, facet(t), flat_share * scale_.apply(allowed_[t])))
+                                           meets[t].store(true, std::memory_order_relaxed);
+                                       });
+                                     });
+    if (!whole) return false;
+    for (std::size_t t = 0; t < count; ++t) {
+      asked[t] = meets[t];
+      if (!meets[t]) continue;
       clear[t] = 0;
       blame(HullFault::meets_surface, t, mesh_.positions[mesh_.triangles[t][0]]);
-      // It may meet another sheet, whose own facets are as near.
-      mark_near(pieces_.all, facet(t), 0, pieces_.marks);
     }
-    for (std::size_t p = 0; p < pieces_.all.size(); ++p) {
-      if (pieces_.marks[p] == 0) continue;
-      const auto& [patch, path] = pieces_.all.name(p);
-      mark({patch, {to_face(path, {0, 0}), to_face(path, {1, 0}), to_face(path, {0, 1})}}, min_share_apart);
-    }
+    if (!mark_pieces(asked)) return false;
     std::vector<Point3> points;
     points.reserve(facets_.positions.size());
     for (const Point3& p : facets_.positions) points.push_back(scale_.apply(p));
@@ -536,18 +630,39 @@ class OneHull {
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
       clear[a] = clear[b] = 0;
     }
-    if (problems_.empty()) return;
-    known_.clear();
-    for (std::size_t t = 0; t < count; ++t) {
-      if (clear[t] != 0) known_.add(scaled(facets_.positions, mesh_.triangles[t]));
-    }
+    if (problems_.empty()) return true;
+    known_.assign(clear, [&](std::size_t t) { return scaled(facets_.positions, mesh_.triangles[t]); });
+    return true;
+  }
+
+  // Marks what is near facets that meet the surface: they may meet another sheet, whose own facets are as near.
+  [[nodiscard]] bool mark_pieces(std::span<const std::uint8_t> meeting) {
+    // Balls around facets reach less far than twice their sides beyond them.
+    const FacetRows rows(meeting, 2,
+                         [&](std::size_t t) { return scaled(facets_.positions, mesh_.triangles[t]); });
+    std::mutex mutex;
+    const bool whole =
+        pieces_.visit([&](const Box3& box) { return rows.meet(box); },
+                      [&](const PieceSet& set, const Box3& box) {
+                        std::vector<std::uint8_t> marks(set.size());
+                        rows.visit(box, [&](std::size_t t) { mark_near(set, facet(t), 0, marks); });
+                        std::vector<PieceName> near;
+                        for (std::size_t p = 0; p < set.size(); ++p) {
+                          if (marks[p] != 0) near.push_back(set.name(p));
+                        }
+                        const std::scoped_lock lock(mutex);
+                        pieces_.mark(near);
+                      });
+    for (const auto& [patch, path] : pieces_.marked())
+      mark({patch, {to_face(path, {0, 0}), to_face(path, {1, 0}), to_face(path, {0, 1})}}, min_share_apart);
+    return whole;
   }
 
   // Smaller tolerances where something is wrong; false where they are as small as they get.
   bool refine() {
     const double least = tolerances_.refine();
-    return least < INFINITY &&
-           (pieces_.refine(surface_, quadratic_share * scale_.apply(least), run_) || blame_budget());
+    pieces_.refine(quadratic_share * scale_.apply(least));
+    return least < INFINITY;
   }
 
   const LimitSurface& surface_;
@@ -570,12 +685,12 @@ class OneHull {
   KnownFacets known_;
 };
 
-// A hull as a surface of its own.
+// Triangles of a hull as a surface of their own.
 class FacetSurface {
  public:
-  FacetSurface(const Hull& hull, std::uint64_t max_kept, const std::shared_ptr<BoundsCache>& library,
-               const WorkMonitor& monitor)
-      : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor),
+  FacetSurface(const Hull& hull, std::span<const std::uint32_t> which, std::uint64_t max_kept,
+               const std::shared_ptr<BoundsCache>& library, const WorkMonitor& monitor)
+      : limit_(mesh_of(hull, which), SchemeOptions{Scheme::flat}, library, monitor),
         bvh_(limit_, {}, monitor),
         workspace_(bvh_, max_kept) {}
 
@@ -584,11 +699,19 @@ class FacetSurface {
   [[nodiscard]] PieceCache& workspace() { return workspace_; }
 
  private:
-  static ControlMesh mesh_of(const Hull& hull) {
+  static ControlMesh mesh_of(const Hull& hull, std::span<const std::uint32_t> which) {
     ControlMesh mesh;
-    mesh.points = hull.positions;
-    for (const Names& t : hull.triangles)
-      mesh.add_face(std::array{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
+    std::unordered_map<std::uint32_t, std::uint32_t> names;
+    for (const std::uint32_t t : which) {
+      std::array<VertexId, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [name, added] =
+            names.emplace(hull.triangles[t][k], static_cast<std::uint32_t>(mesh.points.size()));
+        if (added) mesh.points.push_back(hull.positions[name->first]);
+        corners[k] = VertexId(name->second);
+      }
+      mesh.add_face(corners);
+    }
     return mesh;
   }
 
@@ -616,17 +739,23 @@ class Verification {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
       if (!hull || !is_whole(*hull, inner)) continue;
       whole[inner] = true;
+      system_files::return_free_memory();
       near(*hull, inner);
-      FacetSurface facets = surface_of(*hull);
-      PieceCache own(model_, max_kept());
-      if (hulls_.closed) points_of_hull_ = points_of(facets.model());
-      apart({model_, own, {}}, facets.placed(), HullFault::meets_surface, inner);
-      if (hulls_.closed) around(own, facets.workspace(), inner);
+      if (hulls_.closed) around(*hull, inner);
+      system_files::return_free_memory();
+      for_each_part(*hull, [&](std::span<const std::uint32_t> part) {
+        FacetSurface facets = surface_of(*hull, part);
+        PieceCache own(model_, max_kept());
+        apart({model_, own, {}}, facets.placed(), HullFault::meets_surface, inner);
+      });
     }
     // Those of a closed surface lie on different sides of it.
     if (whole[0] && whole[1] && !hulls_.closed) {
-      FacetSurface inner = surface_of(*hulls_.inner), outer = surface_of(*hulls_.outer);
-      apart(inner.placed(), outer.placed(), HullFault::meets_other, true);
+      FacetSurface outer = surface_of(*hulls_.outer, all_of(*hulls_.outer));
+      for_each_part(*hulls_.inner, [&](std::span<const std::uint32_t> part) {
+        FacetSurface inner = surface_of(*hulls_.inner, part);
+        apart(inner.placed(), outer.placed(), HullFault::meets_other, true, part);
+      });
     }
     return std::move(problems_);
   }
@@ -642,8 +771,26 @@ class Verification {
   [[nodiscard]] std::uint64_t max_kept() const {
     return splits_kept_beside + splits_kept_a_triangle * largest_count_;
   }
-  [[nodiscard]] FacetSurface surface_of(const Hull& hull) const {
-    return {hull, max_kept(), model_.surface().shared_library(), monitor_};
+  static std::vector<std::uint32_t> all_of(const Hull& hull) {
+    std::vector<std::uint32_t> all(hull.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+  }
+  // Calls check(triangles) for parts of a hull that lie together, until one fails: what queries keep of all of it would take most of
+  // the memory.
+  template <class Check>
+  void for_each_part(const Hull& hull, const Check& check) const {
+    std::vector<Point3> centres;
+    centres.reserve(hull.triangles.size());
+    for (const Names& t : hull.triangles)
+      centres.push_back(model_.surface().scale().apply(hull.positions[t[0]]));
+    const std::vector<std::uint32_t> order = in_order_of_place(centres, run_.threads);
+    const std::size_t before = problems_.size();
+    for (std::size_t begin = 0; begin < order.size() && problems_.size() == before; begin += part_size)
+      check(std::span(order).subspan(begin, std::min(part_size, order.size() - begin)));
+  }
+  [[nodiscard]] FacetSurface surface_of(const Hull& hull, std::span<const std::uint32_t> which) const {
+    return {hull, which, max_kept(), model_.surface().shared_library(), monitor_};
   }
   // A limit point of each component.
   struct Member {
@@ -682,7 +829,9 @@ class Verification {
     }
     return problems_.size() == before;
   }
-  void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
+  // `part`: of the inner hull, against the outer one.
+  void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner,
+             std::span<const std::uint32_t> part = {}) {
     const Collision found = collide(
         a, b,
         {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .prove_contact = true},
@@ -691,18 +840,14 @@ class Verification {
     std::optional<std::uint32_t> owner;
     if (found.witness && (*found.witness)[0].at) {
       const std::uint32_t of_a = (*found.witness)[0].at->owner;
-      owner = fault == HullFault::meets_other ? hulls_.inner->owners[of_a] : of_a;
+      owner = fault == HullFault::meets_other ? hulls_.inner->owners[part[of_a]] : of_a;
     }
     blame(fault, inner, found.witness ? (*found.witness)[0].point : Point3{}, owner);
   }
   void near(const Hull& hull, bool inner) {
-    std::vector<Triangle> facets;
-    facets.reserve(hull.triangles.size());
-    for (const Names& t : hull.triangles) {
-      facets.push_back({hull.positions[t[0]], hull.positions[t[1]], hull.positions[t[2]]});
-    }
-    const Deviation found = deviation(
-        surface_, facets, {.absolute = 0x1p-6 * *options_.error, .threshold = *options_.error}, run_);
+    const Deviation found =
+        deviation(surface_, hull.positions, hull.triangles,
+                  {.absolute = 0x1p-6 * *options_.error, .threshold = *options_.error}, run_);
     for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
       if (side->distance.upper <= *options_.error) continue;
       std::optional<std::uint32_t> owner;
@@ -711,16 +856,20 @@ class Verification {
     }
   }
   // One lies in the solid of the other with all its components, and none of these in the solid of the one.
-  void around(PieceCache& own, PieceCache& hull, bool inner) {
+  void around(const Hull& hull, bool inner) {
+    FacetSurface facets = surface_of(hull, all_of(hull));
+    PieceCache own(model_, max_kept());
+    const std::vector<Member> points_of_hull = points_of(facets.model());
     for (const bool of_hull : {false, true}) {
-      for (const auto& [position, owner] : of_hull ? points_of_hull_ : own_points_) {
-        const std::optional<bool> inside = contains(of_hull ? own : hull, position, run_);
+      for (const auto& [position, owner] : of_hull ? points_of_hull : own_points_) {
+        const std::optional<bool> inside = contains(of_hull ? own : facets.workspace(), position, run_);
         if (inside == (of_hull == inner)) continue;
-        blame(HullFault::not_around, inner, position,
-              of_hull ? (inner ? hulls_.inner : hulls_.outer)->owners[owner] : owner);
+        blame(HullFault::not_around, inner, position, of_hull ? hull.owners[owner] : owner);
       }
     }
   }
+
+  static constexpr std::size_t part_size = 8192;
 
   const Surface& surface_;
   const SurfaceBvh& model_;
@@ -729,7 +878,7 @@ class Verification {
   WorkMonitor monitor_;
   Run run_;                      // with this monitor
   std::uint64_t largest_count_;  // of triangles of a hull
-  std::vector<Member> own_points_, points_of_hull_;
+  std::vector<Member> own_points_;
   double certain_gap_ = 0;  // mesh units
   std::vector<HullProblem> problems_;
 };
@@ -764,14 +913,13 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
                          shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
-  std::optional<PieceSet> pieces(std::in_place);
   Hulls result;
   // Two balls that go through each other a little have an inner hull, and no outer one; turned inside out the other way round.
   const int asked_from = options.inner && options.outer ? 0 : rounds_alone;
   OwnContacts contacts(handle, surface, run);
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
-    OneHull side(surface, options, inner, *pieces, run);
+    OneHull side(surface, options, inner, run);
     const std::vector<HullProblem> problems = side.run(contacts, asked_from);
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
     result.closed = !side.has_border_edges();
@@ -780,7 +928,7 @@ Hulls hull(const Surface& handle, const HullOptions& wanted, const Run& run) {
     // Nothing is proved of the other one then, and one that fails takes most of the time.
     if (!problems.empty()) break;
   }
-  pieces.reset();
+  system_files::return_free_memory();
   if (result.problems.empty()) result.problems = problems_of(handle, result, options, run);
   const bool too_few =
       std::any_of(result.problems.begin(), result.problems.end(),

@@ -22,6 +22,11 @@ namespace snug {
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const Run& run = {});
 
+/// The question of deviation.h about triangles of some points; none: each three points in a row.
+[[nodiscard]] Deviation deviation(const Surface& surface, std::span<const Point3> points,
+                                  std::span<const std::array<std::uint32_t, 3>> triangles,
+                                  const DeviationOptions& options, const Run& run = {});
+
 /// Two placed surfaces with their trees and their parts of a workspace.
 struct PlacedPair {
   PlacedPair(const PlacedSurface& in_a, const PlacedSurface& in_b, Workspace& workspace)

@@ -140,12 +140,13 @@ std::optional<double> PlaneCover::distance_of(const QuadraticTriangle& piece) co
                            return std::pair(side.low, side.high) < ends;
                          });
     for (auto side = first; side != sides_.end() && side->low == low && side->high == high; ++side) {
-      if (side->piece == other || !all_signed(set_[side->piece].corners)) continue;
+      const Triangle corners = set_[side->piece].corners;
+      if (side->piece == other || !all_signed(corners)) continue;
       const Point3& p = seen.at[k];
       const Point3& q = seen.at[(k + 1) % 3];
-      const bool across =
-          std::any_of(set_[side->piece].corners.begin(), set_[side->piece].corners.end(),
-                      [&](const Point3& corner) { return seen.turn * orientation(p, q, corner, plane) < 0; });
+      const bool across = std::any_of(corners.begin(), corners.end(), [&](const Point3& corner) {
+        return seen.turn * orientation(p, q, corner, plane) < 0;
+      });
       if (!across) continue;
       needed.push_back(side->piece);
       return true;

@@ -36,8 +36,8 @@ Point3 blossom(const QuadraticTriangle& q, TriangleParameter s, TriangleParamete
          (s.v * wt + ws * t.v) * (q.middles[2] - o);
 }
 
-Point3 flat_point(const QuadraticTriangle& q, TriangleParameter at) {
-  return q.corners[0] + at.u * (q.corners[1] - q.corners[0]) + at.v * (q.corners[2] - q.corners[0]);
+Point3 flat_point(const Triangle& t, TriangleParameter at) {
+  return t[0] + at.u * (t[1] - t[0]) + at.v * (t[2] - t[0]);
 }
 
 Vector3 bend(const QuadraticTriangle& q, std::size_t k) {
@@ -293,12 +293,17 @@ QuadraticTriangle flat_quadratic(const Triangle& triangle) {
 }
 
 QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p) {
-  const QuadraticTriangle& q = set[piece];
-  const bool curved = is_curved(q);
   QuadraticFoot foot;
   foot.piece = piece;
-  foot.at = foot_of(q, curved, p);
-  foot.point = curved ? point_of(q, foot.at) : flat_point(q, foot.at);
+  if (const QuadraticTriangle* const q = set.kept(piece); q != nullptr) {
+    const bool curved = is_curved(*q);
+    foot.at = foot_of(*q, curved, p);
+    foot.point = curved ? point_of(*q, foot.at) : flat_point(q->corners, foot.at);
+  } else {
+    const Triangle t = set.facet(piece);
+    foot.at = flat_foot(t[0], t[1], t[2], p);
+    foot.point = flat_point(t, foot.at);
+  }
   foot.distance = distance(foot.point, p);
   return foot;
 }
@@ -315,12 +320,12 @@ QuadraticFoot foot_beside(const PieceSet& set, const QuadraticFoot& foot, const 
 }
 
 QuadraticTriangle below(const PieceSet& set, const std::array<QuadraticFoot, 3>& feet) {
-  const QuadraticTriangle& q = set[feet[0].piece];
-  QuadraticTriangle part{{feet[0].point, feet[1].point, feet[2].point}, {}, q.error};
-  const bool curved = is_curved(q);
+  const QuadraticTriangle* const q = set.kept(feet[0].piece);
+  QuadraticTriangle part{{feet[0].point, feet[1].point, feet[2].point}, {}, set.error(feet[0].piece)};
+  const bool curved = q != nullptr && is_curved(*q);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
-    part.middles[k] = curved ? blossom(q, feet[k].at, feet[next].at)
+    part.middles[k] = curved ? blossom(*q, feet[k].at, feet[next].at)
                              : part.corners[k] + 0.5 * (part.corners[next] - part.corners[k]);
   }
   return part;

@@ -21,6 +21,12 @@ namespace snug {
 // Pieces, and which one each is a part of.
 struct PieceSet::Made : Pieces {
   std::vector<std::uint32_t> origins;
+};
+// A few of them: a block would be larger.
+struct PieceSet::FewMade {
+  std::vector<QuadraticTriangle> quadratics;
+  std::vector<PieceName> names;
+  std::vector<std::uint32_t> origins;
 
   void add(const QuadraticTriangle& quadratic, const PieceName& name) {
     quadratics.push_back(quadratic);
@@ -49,19 +55,23 @@ class Count {
 
 // Calls add(quadratic, name) for the parts of a piece, with some of them only once there are too many.
 template <class Add>
-void split_to(double error, const LimitSurface& surface, PatchId root, const Patch& patch, Count& count,
-              const Add& add) {
+void split_to(double error, const PieceSet::FinerPieces& finer, const LimitSurface& surface, PatchId root,
+              const Patch& patch, Count& count, const Add& add) {
   if (count.too_many()) return;
   const bool last = patch.path.level() >= PiecePath::max_level;
   const double enough = std::max(error, min_error);
   const QuadraticTriangle quadratic = quadratic_triangle(
       surface.library(), patch, {.sufficient = enough / 4, .useless = last ? INFINITY : enough});
   if (quadratic.error <= enough || last) {
+    const PieceName name{root, patch.path};
+    const auto wanted = finer.find(name);
+    if (wanted != finer.end() && wanted->second < error)
+      return split_to(wanted->second, finer, surface, root, patch, count, add);
     count.add();
-    return add(quadratic, PieceName{root, patch.path});
+    return add(quadratic, name);
   }
   for (unsigned child = 0; child < 4; ++child) {
-    split_to(error, surface, root, split(patch, child), count, add);
+    split_to(error, finer, surface, root, split(patch, child), count, add);
   }
 }
 
@@ -103,7 +113,7 @@ PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, in
   Count counted(most);
   constexpr std::size_t block = 64, blocks_at_once = 64;
   Made all;
-  std::vector<Made> parts(blocks_at_once);
+  std::vector<FewMade> parts(blocks_at_once);
   for (std::size_t first = 0; first < count; first += blocks_at_once * block) {
     parallel_for(std::min(blocks_at_once, (count - first + block - 1) / block), threads,
                  [&](std::size_t begin, std::size_t end) {
@@ -118,8 +128,9 @@ PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, in
                    }
                  });
     if (counted.too_many()) return {};
-    for (Made& part : parts) {
-      for (std::size_t i = 0; i < part.names.size(); ++i) all.add(part.quadratics[i], part.names[i]);
+    for (FewMade& part : parts) {
+      for (const QuadraticTriangle& quadratic : part.quadratics) all.quadratics.push_back(quadratic);
+      for (const PieceName& name : part.names) all.names.push_back(name);
       all.origins.insert(all.origins.end(), part.origins.begin(), part.origins.end());
       part = {};
     }
@@ -129,6 +140,15 @@ PieceSet::Made PieceSet::made_in_order(std::size_t count, std::uint64_t most, in
 
 PieceSet::PieceSet(Blocks<QuadraticTriangle> given)
     : pieces_(std::make_shared<const Pieces>(Pieces{std::move(given), {}})) {}
+
+PieceSet::PieceSet(std::span<const Point3> points, std::span<const std::array<std::uint32_t, 3>> triangles,
+                   PowerOfTwo units)
+    : points_(points), triangles_(triangles), units_(units) {}
+
+QuadraticTriangle PieceSet::operator[](std::size_t piece) const {
+  const QuadraticTriangle* const kept = this->kept(piece);
+  return kept != nullptr ? *kept : flat_quadratic(facet(piece));
+}
 
 void PieceSet::take(Made&& made) {
   pieces_ = std::make_shared<const Pieces>(static_cast<Pieces&&>(made));
@@ -140,13 +160,22 @@ PieceSet::PieceSet(const LimitSurface& surface, double error, int threads, const
     : surface_(&surface), units_(units) {
   const double own_error = units.inverse().apply(error);
   take(made_in_order(
-      surface.patch_count(), most, threads, monitor, [&](std::size_t i, Count& count, Made& made) {
+      surface.patch_count(), most, threads, monitor, [&](std::size_t i, Count& count, FewMade& made) {
         const PatchId root(i);
         if (!surface.has_patch(root)) return;
         split_to(
-            own_error, surface, root, surface.patch(root), count,
+            own_error, {}, surface, root, surface.patch(root), count,
             [&](const QuadraticTriangle& q, const PieceName& name) { made.add(in_units(q, units), name); });
       }));
+}
+
+PieceSet::PieceSet(const LimitSurface& surface, std::span<const PatchId> patches, double error,
+                   const FinerPieces& finer, int threads, const WorkMonitor& monitor, std::uint64_t most)
+    : surface_(&surface) {
+  take(made_in_order(patches.size(), most, threads, monitor, [&](std::size_t i, Count& count, FewMade& made) {
+    split_to(error, finer, surface, patches[i], surface.patch(patches[i]), count,
+             [&](const QuadraticTriangle& q, const PieceName& name) { made.add(q, name); });
+  }));
 }
 
 std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which, double error, int threads,
@@ -158,7 +187,7 @@ std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which,
     return same;
   }
   const double own_error = units_.inverse().apply(error);
-  Made made = made_in_order(size(), most, threads, monitor, [&](std::size_t i, Count& count, Made& parts) {
+  Made made = made_in_order(size(), most, threads, monitor, [&](std::size_t i, Count& count, FewMade& parts) {
     const PieceName& name = pieces_->names[i];
     if (which[i] == 0) {
       count.add();
@@ -168,7 +197,7 @@ std::vector<std::uint32_t> PieceSet::refine(std::span<const std::uint8_t> which,
     Patch patch = surface_->patch(name.patch);
     for (unsigned k = 0; k < name.path.level(); ++k) patch = split(patch, name.path.digit(k));
     split_to(
-        own_error, *surface_, name.patch, patch, count,
+        own_error, {}, *surface_, name.patch, patch, count,
         [&](const QuadraticTriangle& q, const PieceName& part) { parts.add(in_units(q, units_), part); });
   });
   std::vector<std::uint32_t> origins = std::move(made.origins);
@@ -205,6 +234,38 @@ void PieceSet::prepare(int threads) {
                   boxes.push_back(merge(std::span(of_leaf).first(items.size())));
                 });
   tree_ = std::make_shared<const Tree>(Tree{std::move(nodes), std::move(leaves)});
+}
+
+Box3 PieceSet::box() const {
+  Box3 result;
+  double error = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    for (const Point3& p : points_of((*this)[i])) result.add(p);
+    error = std::max(error, this->error(i));
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    result.lower[a] -= enlarged(error) + distance_rounding;
+    result.upper[a] += enlarged(error) + distance_rounding;
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> in_order_of_place(std::span<const Point3> centres, int threads) {
+  if (centres.empty()) return {};
+  const WideBvh tree = WideBvh::in_order(centres, threads);
+  std::vector<std::uint32_t> order;
+  order.reserve(centres.size());
+  for (std::size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    order.insert(order.end(), tree.leaf(leaf).begin(), tree.leaf(leaf).end());
+  }
+  return order;
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(a.lower[k] <= b.upper[k] && b.lower[k] <= a.upper[k])) return false;
+  }
+  return true;
 }
 
 PieceSet::SlackBox::SlackBox(const Obb& of)

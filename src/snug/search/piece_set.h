@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,10 @@ class PieceSet {
   /// Sets that stay as they are.
   /// Requires:  coordinates at most about 2; finite errors.
   explicit PieceSet(Blocks<QuadraticTriangle> given);
+  /// Triangles of some points times `units`; none: each three points in a row. They are not copied.
+  /// Requires:  the same; both outlive the set and its copies.
+  explicit PieceSet(std::span<const Point3> points, std::span<const std::array<std::uint32_t, 3>> triangles,
+                    PowerOfTwo units = {});
   /// Pieces that together are a surface, each split until its error is at most `error`. Where rounding or the last level ends that,
   /// the error is larger. None if these would be more than `most`; memory stays below what so many take. Coordinates are
   /// the surface's scaled ones times `units`.
@@ -36,11 +41,30 @@ class PieceSet {
   /// Errors:    Interrupted.
   PieceSet(const LimitSurface& surface, double error, int threads, const WorkMonitor& monitor = {},
            std::uint64_t most = UINT64_MAX, PowerOfTwo units = {});
+  /// Errors of single pieces that are less than that of the others.
+  using FinerPieces = std::map<PieceName, double>;
+  /// The same of some patches in their order, in the surface's units; where a piece that results is among `finer`, its parts instead.
+  /// Requires:  has_patch() of each.
+  PieceSet(const LimitSurface& surface, std::span<const PatchId> patches, double error,
+           const FinerPieces& finer, int threads, const WorkMonitor& monitor, std::uint64_t most);
 
-  [[nodiscard]] std::size_t size() const { return pieces_ ? pieces_->quadratics.size() : 0; }
+  [[nodiscard]] std::size_t size() const {
+    return pieces_ ? pieces_->quadratics.size() : triangles_.empty() ? points_.size() / 3 : triangles_.size();
+  }
   [[nodiscard]] bool is_surface() const { return surface_ != nullptr; }
-  [[nodiscard]] const QuadraticTriangle& operator[](std::size_t piece) const {
-    return pieces_->quadratics[piece];
+  [[nodiscard]] QuadraticTriangle operator[](std::size_t piece) const;
+  [[nodiscard]] double error(std::size_t piece) const { return pieces_ ? kept(piece)->error : 0; }
+  /// The same where it lies; null for triangles, which are made.
+  [[nodiscard]] const QuadraticTriangle* kept(std::size_t piece) const {
+    return pieces_ ? &pieces_->quadratics[piece] : nullptr;
+  }
+  /// Of triangles.
+  [[nodiscard]] Triangle facet(std::size_t piece) const {
+    Triangle result;
+    for (std::size_t k = 0; k < 3; ++k) {
+      result[k] = units_.apply(points_[triangles_.empty() ? 3 * piece + k : triangles_[piece][k]]);
+    }
+    return result;
   }
   /// Of a piece of a surface.
   [[nodiscard]] const PieceName& name(std::size_t piece) const { return pieces_->names[piece]; }
@@ -58,6 +82,8 @@ class PieceSet {
   /// Requires:  one piece or more, here and below.
   void prepare(int threads);
   [[nodiscard]] bool prepared() const { return tree_ != nullptr; }
+  /// A box around all pieces.
+  [[nodiscard]] Box3 box() const;
   /// Calls visit(piece) for those whose boxes are at most `reach` from p, about the nearest first, until it returns true; a visit may
   /// make `reach` smaller. Did one return true?
   /// Requires:  prepared().
@@ -98,16 +124,25 @@ class PieceSet {
     Blocks<PieceName> names;
   };
   struct Made;
+  struct FewMade;
   template <class Make>
   static Made made_in_order(std::size_t count, std::uint64_t most, int threads, const WorkMonitor& monitor,
                             const Make& make);
   void take(Made&& made);
 
   const LimitSurface* surface_ = nullptr;
+  std::span<const Point3> points_;
+  std::span<const std::array<std::uint32_t, 3>> triangles_;
   PowerOfTwo units_;
   std::shared_ptr<const Pieces> pieces_;
   std::shared_ptr<const Tree> tree_;
 };
+
+/// Items in an order in which those beside each other mostly lie together.
+/// Requires:  that of WideBvh::in_order().
+[[nodiscard]] std::vector<std::uint32_t> in_order_of_place(std::span<const Point3> centres, int threads);
+/// Have two boxes a point in common?
+[[nodiscard]] bool overlap(const Box3& a, const Box3& b);
 
 template <class Gaps, class Visit>
 bool PieceSet::visit_by(const Gaps& find_gaps, double& reach, const Visit& visit) const {

@@ -23,7 +23,7 @@ using Names = std::array<std::uint32_t, 3>;
 using Corners3 = std::array<const Point3*, 3>;
 
 // Of a triangle with later ones: bounds the memory where everything meets everything.
-constexpr int max_of_one = 16;
+constexpr std::uint8_t max_of_one = 16;
 
 // A triangle's extents along axes of its own: these tell most triangles near a narrow one from it.
 class Slabs {
@@ -239,6 +239,23 @@ bool is_narrow(const Triangle& t) {
   return length_sq(cross(t[1] - t[0], t[2] - t[0])) < 0x1p-6 * longest * longest;
 }
 
+Box3 box_of(const Triangle& t) {
+  Box3 box;
+  for (const Point3& p : t) box.add(p);
+  return box;
+}
+
+// Calls visit(piece) for those that may meet a triangle; it may return true to end this where that is narrow.
+template <class Visit>
+void visit_near(const PieceSet& set, const Triangle& triangle, const Visit& visit) {
+  const QuadraticTriangle facet = flat_quadratic(triangle);
+  if (is_narrow(triangle)) {
+    set.visit_near(slim_box(facet), visit);
+  } else {
+    for_each_near(set, facet, [&](std::uint32_t piece) { static_cast<void>(visit(piece)); });
+  }
+}
+
 // ---- Fans ----
 
 // Around a vertex of so many triangles most pairs are near each other.
@@ -334,6 +351,39 @@ std::vector<std::uint32_t> large_fans(std::span<const Point3> points, std::span<
   return fan_of;
 }
 
+// ---- Sets ----
+
+// Triangles that others are compared with; those of a fan, from 1 on, not with each other.
+struct TriangleSet {
+  std::vector<std::uint32_t> members;
+  std::uint32_t fan = 0;
+};
+
+// A set for each fan, and for all others some that lie together: what comparisons need of all of them would take much more memory
+// than the triangles do.
+std::vector<TriangleSet> sets_of(std::span<const Point3> points, std::span<const Names> triangles,
+                                 std::span<const std::uint32_t> fan_of, std::uint32_t fans, int threads) {
+  constexpr std::size_t most = 8192;
+  std::vector<TriangleSet> sets(fans);
+  for (std::uint32_t f = 0; f < fans; ++f) sets[f].fan = f + 1;
+  std::vector<std::uint32_t> others;
+  std::vector<Point3> places;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (fan_of[t] > 0) {
+      sets[fan_of[t] - 1].members.push_back(t);
+    } else {
+      others.push_back(t);
+      places.push_back(points[triangles[t][0]]);
+    }
+  }
+  const std::vector<std::uint32_t> order = in_order_of_place(places, threads);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i % most == 0) sets.emplace_back();
+    sets.back().members.push_back(others[order[i]]);
+  }
+  return sets;
+}
+
 }  // namespace
 
 std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::span<const Names> triangles,
@@ -345,61 +395,53 @@ std::vector<TrianglePair> self_contacts(std::span<const Point3> points, std::spa
   for (const Names& t : triangles) alone.push_back(contact_of_one(points, t));
   std::uint32_t fans = 0;
   const std::vector<std::uint32_t> fan_of = large_fans(points, triangles, alone, fans);
-  // A set for each fan, whose triangles are not compared with each other, and one for all others.
-  const auto flat = [&](std::size_t t) {
-    return flat_quadratic({points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]});
-  };
-  std::vector<std::vector<std::uint32_t>> members(fans + 1);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) members[fan_of[t]].push_back(t);
-  std::vector<PieceSet> sets;
-  for (const std::vector<std::uint32_t>& of_set : members) {
-    Blocks<QuadraticTriangle> facets;
-    for (const std::uint32_t t : of_set) facets.push_back(flat(t));
-    sets.emplace_back(std::move(facets));
-    if (sets.back().size() > 0) sets.back().prepare(threads);
-  }
   constexpr std::size_t block = 1024;
   std::vector<std::vector<TrianglePair>> found((triangles.size() + block - 1) / block);
-  parallel_for(found.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      monitor.checkpoint();
-      for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
-        if (!is_wanted(i)) continue;
+  std::vector<std::uint8_t> found_of(triangles.size());  // pairs
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto own = static_cast<std::uint32_t>(i);
+    if (is_wanted(i) && alone[i] != TriangleContact::none) found[i / block].push_back({own, own, alone[i]});
+  }
+  const auto corners_of = [&](std::size_t t) {
+    return Triangle{points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
+  };
+  for (const TriangleSet& part : sets_of(points, triangles, fan_of, fans, threads)) {
+    std::vector<Names> names;
+    names.reserve(part.members.size());
+    for (const std::uint32_t t : part.members) names.push_back(triangles[t]);
+    PieceSet set(points, names);
+    set.prepare(threads);
+    const Box3 around = set.box();
+    parallel_for(found.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * block; i < std::min(triangles.size(), end * block); ++i) {
+        if (i % block == 0) monitor.checkpoint();
+        if (!is_wanted(i) || alone[i] == TriangleContact::collapsed ||
+            (part.fan > 0 && part.fan == fan_of[i]))
+          continue;
+        const Triangle corners = corners_of(i);
+        if (!overlap(box_of(corners), around)) continue;
         const auto own = static_cast<std::uint32_t>(i);
-        int of_this = 0;
-        if (alone[i] != TriangleContact::none) found[b].push_back({own, own, alone[i]});
-        if (alone[i] == TriangleContact::collapsed) continue;
-        const QuadraticTriangle facet = flat(i);
-        const Slabs slabs(facet.corners);
-        const auto compare = [&](std::uint32_t other, const Triangle& corners) {
-          if (of_this == max_of_one) return true;
+        const Slabs slabs(corners);
+        const auto compare = [&](std::uint32_t piece) {
+          if (found_of[i] == max_of_one) return true;
+          const std::uint32_t other = part.members[piece];
           if (other == own || alone[other] == TriangleContact::collapsed) return false;
           // Of two that are wanted the first one finds the pair.
           if (other < own && is_wanted(other)) return false;
           const bool known = alone[i] == TriangleContact::none && alone[other] == TriangleContact::none;
-          const TriangleContact contact = slabs.apart(corners) ? TriangleContact::none
+          const TriangleContact contact = slabs.apart(corners_of(other)) ? TriangleContact::none
                                           : known ? contact_between(points, triangles[i], triangles[other])
                                                   : TriangleContact::unknown;
           if (contact == TriangleContact::none) return false;
-          found[b].push_back({std::min(own, other), std::max(own, other), contact});
-          ++of_this;
+          found[i / block].push_back({std::min(own, other), std::max(own, other), contact});
+          ++found_of[i];
           return false;
         };
-        const bool narrow = is_narrow(facet.corners);
-        const Obb box = narrow ? slim_box(facet) : Obb{};
-        for (std::uint32_t s = 0; s < sets.size(); ++s) {
-          if (sets[s].size() == 0 || (s > 0 && s == fan_of[i])) continue;
-          const auto visit = [&](std::uint32_t piece) {
-            return compare(members[s][piece], sets[s][piece].corners);
-          };
-          narrow
-              ? static_cast<void>(sets[s].visit_near(box, visit))
-              : for_each_near(sets[s], facet, [&](std::uint32_t piece) { static_cast<void>(visit(piece)); });
-        }
+        visit_near(set, corners, compare);
       }
-      std::sort(found[b].begin(), found[b].end());
-    }
-  });
+    });
+  }
+  for (auto& of_block : found) std::sort(of_block.begin(), of_block.end());
   std::vector<TrianglePair> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   if (!wanted.empty()) std::sort(all.begin(), all.end());
