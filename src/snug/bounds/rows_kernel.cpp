@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -453,16 +452,37 @@ bool has_rows_with_tips(BoundsCache& library, const Kind& kind) {
 template <class T>
 SparseRows<T>::SparseRows(const Stencils& rows, std::size_t count, std::span<const std::uint32_t> names)
     : places(count) {
-  std::iota(places.begin(), places.end(), 0u);
-  const auto length = [&](std::uint32_t r) { return static_cast<std::uint32_t>(rows.row(r).sources.size()); };
-  std::stable_sort(places.begin(), places.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return length(a) < length(b); });
-  for (const std::uint32_t r : places) {
+  struct OfLength {
+    std::uint32_t rows = 0, next = 0;
+    std::size_t entry = 0;
+  };
+  std::vector<OfLength> by_length;
+  for (std::size_t r = 0; r < count; ++r) {
+    const std::size_t length = rows.row(r).sources.size();
+    if (length >= by_length.size()) by_length.resize(length + 1);
+    ++by_length[length].rows;
+  }
+  std::uint32_t place = 0;
+  std::size_t entries = 0;
+  for (std::size_t length = 0; length < by_length.size(); ++length) {
+    OfLength& of = by_length[length];
+    if (of.rows == 0) continue;
+    runs.push_back({of.rows, static_cast<std::uint32_t>(length)});
+    of.next = place;
+    of.entry = entries;
+    place += of.rows;
+    entries += of.rows * length;
+  }
+  sources.resize(entries);
+  weights.resize(entries);
+  for (std::size_t r = 0; r < count; ++r) {
     const Stencils::Row row = rows.row(r);
-    for (const std::uint32_t source : row.sources) sources.push_back(names.empty() ? source : names[source]);
-    for (const double weight : row.weights) weights.push_back(static_cast<T>(weight));
-    if (runs.empty() || runs.back().length != length(r)) runs.push_back({0, length(r)});
-    ++runs.back().rows;
+    OfLength& of = by_length[row.sources.size()];
+    places[of.next++] = static_cast<std::uint32_t>(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i, ++of.entry) {
+      sources[of.entry] = names.empty() ? row.sources[i] : names[row.sources[i]];
+      weights[of.entry] = static_cast<T>(row.weights[i]);
+    }
   }
 }
 
