@@ -183,7 +183,8 @@ TEST(envelope, is_closed_and_around_the_surface) {
     EXPECT_EQ(found["envelope"]["gap"], found["error"]);
     EXPECT_LE(found["volume"][0], found["volume"][1]);
     EXPECT_EQ(read_closed(file).face_count(), found["envelope"]["triangles"]);
-    const json apart = answer({"distance", file, mesh, "--scheme-a", "flat", "--relative", "1e-3"});
+    const json apart =
+        answer({"distance", file, mesh, "--scheme-a", "flat", "--relative", "1e-3", "--absolute", "1e-6"});
     EXPECT_GE(apart["distance"][1], found["clearance"]);
     EXPECT_GE(static_cast<double>(apart["distance"][0]) * 1.01, found["clearance"]) << mesh;
     const json far = answer({"deviation", mesh, file, "--absolute", "0.1%"});
