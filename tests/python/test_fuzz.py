@@ -196,6 +196,8 @@ def test_robots(at, path, tolerance, joined):
         attempt(lambda: snug.urdf(file, packages=at, root=path, primitive_error=tolerance, visual=joined))
         attempt(lambda: snug.read_assembly(at, scheme=path, weld=tolerance, threads=joined))
     attempt(lambda: arm.poses(at))
+    attempt(lambda: arm.link_motions(at, path, [{}, at]))
+    attempt(lambda: snug.clearance(*arm.link_motions("a", "b", path), max_splits=100))
     for _, _, first in attempt(lambda: arm.first_contacts(path, tolerance=tolerance, joined=joined, max_splits=100)) or ():
         assert first.lower <= seen(first).upper
     for _, _, first in attempt(lambda: arm.first_contacts([{}, at], max_splits=100, threads=joined)) or ():
