@@ -316,18 +316,18 @@ class EnvelopeMaker {
     const double width = band_.upper - band_.lower;
     simplify(mesh_, first_move_share * width, {}, {}, run_.threads, monitor_);
     const ClosedMesh near = mesh_;
-    if (!ball_ && reduce(second_move_share, {})) return true;
+    if (!ball_ && reduce(second_move_share, {}, nullptr, max_reductions - 1)) return true;
     mesh_ = whole;
     return reduce(first_move_share, {}, &near);
   }
-  // Fewer triangles, all of them proved. Where that fails all that is near stays as it is. False if it fails even so. `first`: the mesh,
-  // if it is known, before anything has failed.
+  // Fewer triangles, all of them proved. Where that fails all that is near stays as it is, in the last round of max_reductions
+  // everything. False if it fails even so. `first`: the mesh, if it is known, before anything has failed.
   bool reduce(double share, const std::function<bool(const Triangle&)>& accept,
-              const ClosedMesh* first = nullptr) {
+              const ClosedMesh* first = nullptr, int rounds = max_reductions) {
     const double least = accept ? 0 : least_distance();
     ClosedMesh whole = mesh_;
     std::vector<std::uint8_t> kept;
-    for (int round = 0; round < max_reductions; ++round) {
+    for (int round = 0; round < rounds; ++round) {
       mesh_ = round == 0 && first != nullptr ? *first : whole;
       const bool last = round + 1 == max_reductions;
       if (last) kept.assign(whole.points.size(), 1);
