@@ -182,19 +182,25 @@ class SNUG_OT_envelope(Asking, bpy.types.Operator):
         return lines
 
 
-class SNUG_OT_step(Asking, bpy.types.Operator):
+class Exporting(Asking):
+    """Asks for a file, named after the active object, before the answer is made."""
+
+    filepath: StringProperty(subtype="FILE_PATH")
+
+    def invoke(self, context, event):
+        self.filepath = (context.object.name if context.object else "surface") + self.ending
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+
+class SNUG_OT_step(Exporting, bpy.types.Operator):
     """Writes the limit surface of the active object as B-spline faces"""
 
     bl_idname = "snug.step"
     bl_label = "Export STEP"
-    filepath: StringProperty(subtype="FILE_PATH")
+    ending = ".step"
     filter_glob: StringProperty(default="*.step;*.stp", options={"HIDDEN"})
     error: FloatProperty(name="Error", description="Percent of the object's size", default=0.1, min=0.0001, soft_max=5, precision=4)
-
-    def invoke(self, context, event):
-        self.filepath = f"{context.object.name}.step" if context.object else "surface.step"
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
 
     def ask(self, context):
         obj, surface = active_surface(context)
@@ -208,18 +214,13 @@ class SNUG_OT_step(Asking, bpy.types.Operator):
         return [f"{obj.name}: {path}"]
 
 
-class SNUG_OT_control_mesh(Asking, bpy.types.Operator):
+class SNUG_OT_control_mesh(Exporting, bpy.types.Operator):
     """Writes the control mesh of the active object with its creases, corners and boundary rule, for snug elsewhere"""
 
     bl_idname = "snug.control_mesh"
     bl_label = "Export control mesh"
-    filepath: StringProperty(subtype="FILE_PATH")
+    ending = ".obj"
     filter_glob: StringProperty(default="*.obj;*.usda", options={"HIDDEN"})
-
-    def invoke(self, context, event):
-        self.filepath = f"{context.object.name}.obj" if context.object else "surface.obj"
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
 
     def ask(self, context):
         obj, surface = active_surface(context)
