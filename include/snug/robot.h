@@ -28,6 +28,7 @@ struct Robot {
     std::string name;
     std::vector<Shape> shapes{};
     std::optional<std::uint32_t> joint{};  ///< that moves it; none for the root
+    [[nodiscard]] SNUG_API std::string name_of(std::size_t shape) const;  ///< "link#2" where it has several
   };
   struct Mimic {
     std::uint32_t joint;  ///< whose position, times `factor` and plus `offset`, is the position
@@ -121,7 +122,7 @@ struct LinkContactsOptions {
 };
 /// When two shapes of two links first meet.
 struct LinkContact {
-  std::string a, b;                     ///< links; "link#2" where one has several shapes
+  std::string a, b;                     ///< Link::name_of() the shapes
   std::string frame;                    ///< the link in whose frame the witness is
   std::array<PlacedSurface, 2> placed;  ///< at the upper end of the time, or at 0 if that is infinite
   TimeOfContact answer;

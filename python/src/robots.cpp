@@ -104,17 +104,14 @@ std::vector<std::vector<double>> positions_along(const Robot& robot, const py::l
 
 // The shape that first_contacts() names so.
 std::pair<std::uint32_t, Robot::Shape> shape_named(const Robot& robot, const std::string& name) {
-  const auto is_shape = [&](const Robot::Link& link, std::size_t shape) {
-    return name == (link.shapes.size() == 1 ? link.name : link.name + '#' + std::to_string(shape + 1));
-  };
   for (std::uint32_t l = 0; l < robot.links.size(); ++l) {
     const Robot::Link& link = robot.links[l];
     for (std::size_t shape = 0; shape < link.shapes.size(); ++shape)
-      if (is_shape(link, shape)) return {l, link.shapes[shape]};
+      if (name == link.name_of(shape)) return {l, link.shapes[shape]};
     if (name != link.name) continue;
     if (link.shapes.empty()) throw py::value_error("robot: link '" + name + "' has no shape");
-    throw py::value_error("robot: link '" + name + "' has several shapes: give '" + name + "#1' to '" + name +
-                          '#' + std::to_string(link.shapes.size()) + "'");
+    throw py::value_error("robot: link '" + name + "' has several shapes: give '" + link.name_of(0) +
+                          "' to '" + link.name_of(link.shapes.size() - 1) + "'");
   }
   throw py::value_error("robot: no link is called '" + name + "'");
 }

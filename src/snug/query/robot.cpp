@@ -11,6 +11,10 @@
 #include <support/run.h>
 
 namespace snug {
+
+std::string Robot::Link::name_of(std::size_t shape) const {
+  return shapes.size() == 1 ? name : name + '#' + std::to_string(shape + 1);
+}
 namespace {
 
 void require_positions(const Robot& robot, std::span<const double> positions) {
@@ -172,10 +176,6 @@ std::vector<ShapePair> shape_pairs(const Robot& robot, const LinkContactsOptions
   return pairs;
 }
 
-std::string shape_name(const Robot::Link& link, std::size_t shape) {
-  return link.shapes.size() == 1 ? link.name : link.name + '#' + std::to_string(shape + 1);
-}
-
 LinkContact first_contact(const Robot& robot, const ShapePair& pair, std::span<const Surface> surfaces,
                           std::span<const std::vector<double>> positions, const LinkContactsOptions& options,
                           const Run& run) {
@@ -193,8 +193,8 @@ LinkContact first_contact(const Robot& robot, const ShapePair& pair, std::span<c
   const bool goes_beyond = robot.outward[shape_a.mesh] > 0 || robot.outward[shape_b.mesh] > 0;
   if (answer.verdict == Verdict::intersecting && goes_beyond) answer.verdict = Verdict::within;
   const double time = std::isfinite(answer.time.upper) ? answer.time.upper : 0;
-  return {shape_name(link_a, pair.shapes[0]),
-          shape_name(link_b, pair.shapes[1]),
+  return {link_a.name_of(pair.shapes[0]),
+          link_b.name_of(pair.shapes[1]),
           robot.links[common_link(robot, pair.links.a, pair.links.b)].name,
           {a.at(motion_a.at(time)), b.at(motion_b.at(time))},
           std::move(answer)};
