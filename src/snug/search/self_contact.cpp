@@ -363,7 +363,7 @@ struct TriangleSet {
 // than the triangles do.
 std::vector<TriangleSet> sets_of(std::span<const Point3> points, std::span<const Names> triangles,
                                  std::span<const std::uint32_t> fan_of, std::uint32_t fans, int threads) {
-  constexpr std::size_t most = 8192;
+  constexpr std::size_t least_size = 8192, max_sets = 128;
   std::vector<TriangleSet> sets(fans);
   for (std::uint32_t f = 0; f < fans; ++f) sets[f].fan = f + 1;
   std::vector<std::uint32_t> others;
@@ -377,6 +377,8 @@ std::vector<TriangleSet> sets_of(std::span<const Point3> points, std::span<const
     }
   }
   const std::vector<std::uint32_t> order = in_order_of_place(places, threads);
+  // Each triangle is held against the box of each set.
+  const std::size_t most = std::max(least_size, (order.size() + max_sets - 1) / max_sets);
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i % most == 0) sets.emplace_back();
     sets.back().members.push_back(others[order[i]]);
