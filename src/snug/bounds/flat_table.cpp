@@ -43,33 +43,34 @@ FlatTable<T> with_errors(std::span<const TableColumn<T>> columns, std::size_t fi
   }
   const std::size_t count = columns.size() + first;
   flat.error_of_largest = enlarged(24 * most * roundoff_of<T>);
-  flat.error_of_offset = enlarged(2 * most * gamma_of<T>(count + 4));
+  flat.error_of_offset = enlarged(2 * most * gamma_bound<T>(count + 4));
   flat.error_at_least = enlarged((16 * most + 8 * static_cast<double>(count)) * underflow_of<T>);
   return flat;
 }
 
 }  // namespace
 
-template <class T>
-FlatTable<T> flatten(const BoundTable& table, const Kind& kind, std::vector<TableColumn<T>>& memory) {
+FlatTable<double> flatten(const BoundTable& table, const Kind& kind,
+                          std::vector<TableColumn<double>>& memory) {
   const std::size_t count = table.control_count(), first = table.first_bounded();
   SNUG_EXPECT(first == 0 || first == 3);
   memory.clear();
   std::array<double, 3> gain;
   for (std::size_t k = 0; k < 3; ++k) gain[k] = reach(table.triangle[k]);
   for (std::size_t i = first; i < count; ++i) {
-    TableColumn<T> column{static_cast<T>(table.layout[i][0]), static_cast<T>(table.layout[i][1]), {}, {}, {}};
+    TableColumn<double> column{table.layout[i][0], table.layout[i][1], {}, {}, {}};
     for (std::size_t k = 0; k < 3; ++k) {
       const double low = table.lower[i - first][k], high = table.upper[i - first][k];
       const double most = std::max(std::fabs(low), std::fabs(high));
-      column.middle[k] = static_cast<T>(0.5 * (low + high));
-      column.half[k] = covering<T>(0.5 * (high - low), most);
-      gain[k] += reach(table.layout[i]) * (most + static_cast<double>(column.half[k]));
+      column.middle[k] = 0.5 * (low + high);
+      column.half[k] = covering<double>(0.5 * (high - low), most);
+      gain[k] += reach(table.layout[i]) * (most + column.half[k]);
     }
     memory.push_back(column);
   }
   if (first == 0) set_linear(kind, memory);
-  return with_errors<T>(memory, first, table.triangle, enlarged(*std::max_element(gain.begin(), gain.end())));
+  return with_errors<double>(memory, first, table.triangle,
+                             enlarged(*std::max_element(gain.begin(), gain.end())));
 }
 
 template <class T>
@@ -87,8 +88,6 @@ FlatTable<T> flatten(const TipTable& table, const Kind& kind, std::vector<TableC
   return with_errors<T>(memory, table.first_bounded(), table.triangle(), table.error_of_points() / 2);
 }
 
-template FlatTable<float> flatten(const BoundTable&, const Kind&, std::vector<TableColumn<float>>&);
-template FlatTable<double> flatten(const BoundTable&, const Kind&, std::vector<TableColumn<double>>&);
 template FlatTable<float> flatten(const TipTable&, const Kind&, std::vector<TableColumn<float>>&);
 template FlatTable<double> flatten(const TipTable&, const Kind&, std::vector<TableColumn<double>>&);
 

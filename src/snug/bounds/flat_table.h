@@ -2,28 +2,11 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include <snug/bounds/bound_table.h>
 #include <snug/bounds/tip_table.h>
-
-namespace snug {
-
-/// As unit_roundoff, underflow_error and gamma_bound(), of another type of numbers.
-template <class T>
-inline constexpr double roundoff_of = static_cast<double>(std::numeric_limits<T>::epsilon()) / 2;
-template <class T>
-inline constexpr double underflow_of = static_cast<double>(std::numeric_limits<T>::min());
-/// Infinite beyond thousands of roundings in single precision.
-template <class T>
-[[nodiscard]] constexpr double gamma_of(std::size_t k) {
-  const double sum = static_cast<double>(k) * roundoff_of<T>;
-  return sum <= 0x1p-13 ? sum * (1 + 0x1p-12) : std::numeric_limits<double>::infinity();
-}
-
-}  // namespace snug
 
 namespace snug::kernels {
 
@@ -52,9 +35,8 @@ struct FlatTable {
 ///            together: control points relative to the origin, the linear function, the sums.
 /// Requires:  the table of this kind; both, and `memory`, outlive the result.
 /// Source:    derivations/rounding.md, "Batches".
-template <class T>
-[[nodiscard]] FlatTable<T> flatten(const BoundTable& table, const Kind& kind,
-                                   std::vector<TableColumn<T>>& memory);
+[[nodiscard]] FlatTable<double> flatten(const BoundTable& table, const Kind& kind,
+                                        std::vector<TableColumn<double>>& memory);
 template <class T>
 [[nodiscard]] FlatTable<T> flatten(const TipTable& table, const Kind& kind,
                                    std::vector<TableColumn<T>>& memory);

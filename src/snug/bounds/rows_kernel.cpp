@@ -60,7 +60,7 @@ HWY_INLINE void each_product(D d, const SparseRows<T>& rows, const LanesOf<T>& p
   }
 }
 
-// What a vector of T is in doubles: one of them, or two.
+// Vectors of doubles that hold as many numbers as one of D: one, or two.
 template <class D>
 constexpr std::size_t most_parts = sizeof(double) / sizeof(hn::TFromD<D>);
 
@@ -172,7 +172,7 @@ struct PlacedV {
   V largest;
 };
 
-// What bounds them in their frames, from their control points there: the middle of their heights, the square of what no point of
+// Bounds of patches in their frames, from their control points there: the middle of their heights, the square of what no point of
 // theirs is farther from the base by, but for `height_error`; and whether tips stick out too far. Doubts: how much of it may be
 // errors of heights, and of places.
 template <class V, class M>
@@ -497,7 +497,8 @@ struct RowsWithTips<T>::Growth {
     of_points = enlarged(of_points * (sum + by.max_error()));
     of_largest = by.result_error(size, of_largest);
     // Roundings of weights and of sums in single precision.
-    if (sizeof(T) < sizeof(double)) of_largest = enlarged(of_largest + gamma_of<T>(entries + 2) * sum * size);
+    if (sizeof(T) < sizeof(double))
+      of_largest = enlarged(of_largest + gamma_bound<T>(entries + 2) * sum * size);
     size = enlarged(size * sum);
   }
 };

@@ -69,7 +69,7 @@ class RowsWithTips {
   /// After so many levels.
   [[nodiscard]] std::size_t bezier_count(unsigned levels) const;
 
-  /// What a coordinate of a point is off by, at most: these times an error of all control points, and times the largest such
+  /// A coordinate of a point is off by at most these times an error of all control points, and times the largest such
   /// coordinate of one.
   [[nodiscard]] double error_of_points() const { return error_of_points_; }
   [[nodiscard]] double error_of_largest() const { return error_of_largest_; }

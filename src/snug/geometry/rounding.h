@@ -16,16 +16,22 @@ static_assert(FLT_EVAL_METHOD == 0 && std::numeric_limits<double>::is_iec559,
 
 namespace snug {
 
-/// Half the distance from 1 to the next double: one rounding to nearest errs by at most this, relatively.
-inline constexpr double unit_roundoff = 0x1p-53;
+/// Half the distance from 1 to the next number: one rounding to nearest errs by at most this, relatively.
+template <class T>
+inline constexpr double roundoff_of = static_cast<double>(std::numeric_limits<T>::epsilon()) / 2;
+inline constexpr double unit_roundoff = roundoff_of<double>;
 
 /// Error of one operation where denormals are flushed, which programs that link snug may do.
-inline constexpr double underflow_error = DBL_MIN;
+template <class T>
+inline constexpr double underflow_of = static_cast<double>(std::numeric_limits<T>::min());
+inline constexpr double underflow_error = underflow_of<double>;
 
-/// Upper bound of k u / (1 - k u), the relative error of k roundings in a row [Higham02, lemma 3.1].
-/// Requires:  k <= 2^40.
+/// Upper bound of k u / (1 - k u), the relative error of k roundings in a row [Higham02, lemma 3.1]; infinite beyond
+/// k u = 2^-13, which is 2^40 roundings of doubles and 2^11 of floats.
+template <class T = double>
 [[nodiscard]] constexpr double gamma_bound(std::size_t k) {
-  return static_cast<double>(k) * unit_roundoff * (1 + 0x1p-12);
+  const double sum = static_cast<double>(k) * roundoff_of<T>;
+  return sum <= 0x1p-13 ? sum * (1 + 0x1p-12) : std::numeric_limits<double>::infinity();
 }
 
 /// Upper bound of a non-negative quantity that was computed in doubles by at most a thousand roundings.

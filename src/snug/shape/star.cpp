@@ -359,7 +359,7 @@ class StarCheck {
       flat_.push_back(
           seen(*sector.patch, sector.mirrored ? Frame{-frame_[0], frame_[1]} : frame_, frame_off_));
     }
-    // What costs least first.
+    // The cheapest first.
     return sectors_turn(true) && border_turns_once() && sectors_turn(false);
   }
 
