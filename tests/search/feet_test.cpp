@@ -98,6 +98,23 @@ TEST(feet, certain_distances_hold_and_are_narrow) {
   }
 }
 
+TEST(feet, nearest_feet_are_the_nearest_of_all_pieces) {
+  Draw draw(8);
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<QuadraticTriangle> quadratics(1 + draw.below(60));
+    for (QuadraticTriangle& q : quadratics) q = draw.quadratic();
+    PieceSet set(quadratics);
+    set.prepare(1);
+    for (int i = 0; i < 20; ++i) {
+      const Point3 p = Point3{} + draw.vector(std::array{0.5, 1.5, 5.0}[draw.below(3)]);
+      double least = INFINITY;
+      for (std::uint32_t piece = 0; piece < set.size(); ++piece)
+        least = std::min(least, foot_on(set, piece, p).distance);
+      EXPECT_NEAR(nearest_foot(set, p).distance, least, 1e-14);
+    }
+  }
+}
+
 TEST(feet, feet_on_triangles_are_the_nearest) {
   Draw draw(3);
   for (int i = 0; i < 20'000; ++i) {

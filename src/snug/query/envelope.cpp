@@ -21,6 +21,7 @@
 #include <snug/search/placed_box.h>
 #include <snug/search/precision.h>
 #include <snug/search/self_contact.h>
+#include <snug/search/solid.h>
 #include <support/direction.h>
 #include <support/error.h>
 #include <support/parallel.h>
@@ -69,8 +70,9 @@ constexpr double pose_roundings = 64 * unit_roundoff;
 // All parts as one set, in units in which coordinates are below 1.
 struct PlacedPieces {
   PieceSet set;
-  PowerOfTwo scale;             // from mesh units
-  std::vector<Point3> members;  // for each patch, a point within the error of its pieces
+  PowerOfTwo scale;  // from mesh units
+  std::vector<Point3>
+      members;  // for each connected component of a part, a point within the error of its pieces
 };
 
 // A box around all parts, in mesh units.
@@ -91,6 +93,8 @@ std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, 
     const LimitSurface& surface = part.surface().data()->bvh().surface();
     const PieceSet own(surface, error, run.threads, stop_only(run), most, scale * surface.scale().inverse());
     if (own.size() == 0 || all.size() + own.size() > most) return std::nullopt;
+    const std::vector<PatchId> components = component_patches(surface);
+    auto component = components.begin();
     const Motion& pose = part.pose();
     const Vector3 offset = scale.apply(pose.offset());
     const auto placed = [&](const Point3& p) {
@@ -112,7 +116,10 @@ std::optional<PlacedPieces> placed_pieces(std::span<const PlacedSurface> parts, 
         throw InputError(InputProblem::unrepresentable,
                          "envelope: a patch of the surface does not fit doubles; scale the mesh");
       }
-      if (i == 0 || own.name(i).patch != own.name(i - 1).patch) result.members.push_back(piece.corners[0]);
+      if (component != components.end() && own.name(i).patch == *component) {
+        result.members.push_back(piece.corners[0]);
+        ++component;
+      }
       all.push_back(piece);
     }
   }
@@ -520,7 +527,7 @@ class EnvelopeMaker {
     result.problems.push_back({fault, false, in_mesh_units(place)});
     return result;
   }
-  // Is each patch inside? None meets the mesh, so a point of each tells.
+  // Are all components inside? None meets the mesh, so a point of each tells.
   Envelope finished() {
     if (mesh_.triangles.empty() || !is_manifold(mesh_))
       return without(HullFault::meets_itself, pieces_.members[0]);

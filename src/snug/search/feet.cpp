@@ -48,6 +48,10 @@ double largest_bend(const QuadraticTriangle& q) {
   return std::sqrt(std::max({length_sq(bend(q, 0)), length_sq(bend(q, 1)), length_sq(bend(q, 2))}));
 }
 
+Point3 middle_of_side(const QuadraticTriangle& q, std::size_t k) {
+  return q.middles[k] + 0.25 * ((q.corners[k] - q.middles[k]) + (q.corners[(k + 1) % 3] - q.middles[k]));
+}
+
 bool is_curved(const QuadraticTriangle& q) {
   return max_abs(bend(q, 0)) > 0x1p-50 || max_abs(bend(q, 1)) > 0x1p-50 || max_abs(bend(q, 2)) > 0x1p-50;
 }
@@ -216,14 +220,19 @@ TriangleParameter between(const Corners& at, TriangleParameter t) {
                        w * at[0].v + t.u * at[1].v + t.v * at[2].v);
 }
 
-TriangleParameter foot_of(const QuadraticTriangle& q, bool curved, const Point3& p) {
-  TriangleParameter first = flat_foot(q.corners[0], q.corners[1], q.corners[2], p);
-  if (!curved) return first;
+// From the foot on the flat triangle of the corners.
+TriangleParameter curved_foot_of(const QuadraticTriangle& q, const Point3& p, TriangleParameter first) {
   if (bends_much(q)) {
+    Triangle middles;
+    for (std::size_t k = 0; k < 3; ++k) middles[k] = middle_of_side(q, k);
+    const std::array<Triangle, 4> flat{Triangle{q.corners[0], middles[0], middles[2]},
+                                       {middles[0], q.corners[1], middles[1]},
+                                       {middles[2], middles[1], q.corners[2]},
+                                       {middles[1], middles[2], middles[0]}};
+    const std::array<Corners, 4> places = quarters(whole_triangle);
     double least = distance(point_of(q, first), p);
-    for (const Corners& quarter : quarters(whole_triangle)) {
-      const TriangleParameter at = between(
-          quarter, flat_foot(point_of(q, quarter[0]), point_of(q, quarter[1]), point_of(q, quarter[2]), p));
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+      const TriangleParameter at = between(places[i], flat_foot(flat[i][0], flat[i][1], flat[i][2], p));
       if (const double here = distance(point_of(q, at), p); here < least) {
         least = here;
         first = at;
@@ -231,6 +240,11 @@ TriangleParameter foot_of(const QuadraticTriangle& q, bool curved, const Point3&
     }
   }
   return curved_foot(q, p, first);
+}
+
+TriangleParameter foot_of(const QuadraticTriangle& q, bool curved, const Point3& p) {
+  const TriangleParameter first = flat_foot(q.corners[0], q.corners[1], q.corners[2], p);
+  return curved ? curved_foot_of(q, p, first) : first;
 }
 
 // The hull of the points is at least this far from p: a plane across the direction to a point nearby.
@@ -292,17 +306,17 @@ QuadraticTriangle flat_quadratic(const Triangle& triangle) {
   return q;
 }
 
-QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p) {
+QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p, double least) {
   QuadraticFoot foot;
   foot.piece = piece;
-  if (const QuadraticTriangle* const q = set.kept(piece); q != nullptr) {
-    const bool curved = is_curved(*q);
-    foot.at = foot_of(*q, curved, p);
-    foot.point = curved ? point_of(*q, foot.at) : flat_point(q->corners, foot.at);
-  } else {
-    const Triangle t = set.facet(piece);
-    foot.at = flat_foot(t[0], t[1], t[2], p);
-    foot.point = flat_point(t, foot.at);
+  const QuadraticTriangle* const q = set.kept(piece);
+  const Triangle t = q != nullptr ? q->corners : set.facet(piece);
+  foot.at = flat_foot(t[0], t[1], t[2], p);
+  foot.point = flat_point(t, foot.at);
+  if (q != nullptr && is_curved(*q)) {
+    if (plane_distance(*q, p, foot.point) > least) return foot;
+    foot.at = curved_foot_of(*q, p, foot.at);
+    foot.point = point_of(*q, foot.at);
   }
   foot.distance = distance(foot.point, p);
   return foot;
@@ -335,7 +349,8 @@ QuadraticFoot nearest_foot(const PieceSet& set, const Point3& p, const Quadratic
   QuadraticFoot best = hint;
   if (hint.distance != INFINITY) best = foot_on(set, hint.piece, p);
   set.visit_near(p, best.distance, [&](std::uint32_t piece) {
-    if (const QuadraticFoot foot = foot_on(set, piece, p); foot.distance < best.distance) best = foot;
+    if (const QuadraticFoot foot = foot_on(set, piece, p, best.distance); foot.distance < best.distance)
+      best = foot;
     return false;
   });
   return best;
@@ -398,7 +413,8 @@ double certain_distance(const PieceSet& set, const Point3& p, double gap, Quadra
   double least = INFINITY;
   int splits = 0;
   set.visit_near(p, least, [&](std::uint32_t piece) {
-    if (const QuadraticFoot own = foot_on(set, piece, p); own.distance < foot.distance) foot = own;
+    if (const QuadraticFoot own = foot_on(set, piece, p, foot.distance); own.distance < foot.distance)
+      foot = own;
     least = certain_distance_of(set[piece], piece, p, gap, least, splits, foot);
     return false;
   });

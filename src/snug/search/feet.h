@@ -36,8 +36,10 @@ struct QuadraticFoot {
   double distance = INFINITY;  ///< from the other point, in double precision
 };
 
-/// A point on one piece near p: exact up to rounding on a flat one, by Newton's method on others.
-[[nodiscard]] QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p);
+/// A point on one piece near p: exact up to rounding on a flat one, by Newton's method on others. At an infinite distance where it is
+/// farther than `least`, if that is seen sooner.
+[[nodiscard]] QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p,
+                                    double least = INFINITY);
 /// A point near p on the piece of another point's foot, by Newton's method from that: on the same sheet of a piece that comes back to where it
 /// was, if both points are near each other.
 [[nodiscard]] QuadraticFoot foot_beside(const PieceSet& set, const QuadraticFoot& foot, const Point3& p);

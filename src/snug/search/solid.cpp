@@ -13,22 +13,6 @@
 namespace snug {
 namespace {
 
-std::vector<PatchId> component_patches(const LimitSurface& surface) {
-  DisjointSets components(surface.corner_name_count());
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    const auto names = surface.corner_names(PatchId(p));
-    for (std::size_t k = 1; k < 3; ++k) components.join(names[0], names[k]);
-  }
-  std::vector<bool> seen(surface.corner_name_count());
-  std::vector<PatchId> patches;
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    const std::uint32_t component = components.least(surface.corner_names(PatchId(p))[0]);
-    if (!seen[component]) patches.emplace_back(p);
-    seen[component] = true;
-  }
-  return patches;
-}
-
 // Calls visit(first, second, edge, ways) for each edge of an owner that its first split cuts in two: the
 // patches on the first and on the second half of it, whose corners there are 0 and 1, and 1 and 2. `ways` is 1
 // if the owner runs from the end of the lesser name to the other one, else -1.
@@ -112,6 +96,26 @@ std::optional<VertexId> vertex_on(const LimitSurface& surface, VertexId a, Verte
 }
 
 }  // namespace
+
+std::vector<PatchId> component_patches(const LimitSurface& surface) {
+  DisjointSets components(surface.corner_name_count());
+  const auto for_each_patch = [&](const auto& visit) {
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (surface.has_patch(PatchId(p))) visit(PatchId(p), surface.corner_names(PatchId(p)));
+    }
+  };
+  for_each_patch([&](PatchId, const auto& names) {
+    for (std::size_t k = 1; k < 3; ++k) components.join(names[0], names[k]);
+  });
+  std::vector<bool> seen(surface.corner_name_count());
+  std::vector<PatchId> patches;
+  for_each_patch([&](PatchId p, const auto& names) {
+    const std::uint32_t component = components.least(names[0]);
+    if (!seen[component]) patches.push_back(p);
+    seen[component] = true;
+  });
+  return patches;
+}
 
 bool is_closed(const LimitSurface& surface) {
   return !first_open_edge(surface.topology()) && !first_hole(surface);

@@ -10,6 +10,9 @@
 
 namespace snug {
 
+/// A patch of each connected component: of patches with limit points of corners in common.
+[[nodiscard]] std::vector<PatchId> component_patches(const LimitSurface& surface);
+
 /// Does a surface bound a solid? So it does if along every edge of its mesh as many faces run one way as the
 /// other, and all faces have a limit surface. The mesh need not be manifold.
 /// Source:    derivations/contact.md, "Inside or outside of a closed surface".
@@ -31,7 +34,7 @@ class Solid {
   [[nodiscard]] const std::vector<LimitTriangle>& fillers() const { return fillers_; }
   /// Over the fillers; null if there are none.
   [[nodiscard]] const WideBvh* filler_tree() const { return tree_.get(); }
-  /// A patch of each connected component.
+  /// Those of component_patches().
   [[nodiscard]] const std::vector<PatchId>& components() const { return components_; }
 
  private:
