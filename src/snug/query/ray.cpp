@@ -50,13 +50,12 @@ class RaySearch {
     precision_ = surface.scale().apply(precision);
   }
 
-  // Answers some rays, at most rays_at_once.
+  // Answers some rays, at most rays_at_once; `found` keeps its memory from one call to the next.
   void ask(PieceCache& workspace, SurfaceEvaluator& evaluator, std::span<const Ray> rays,
-           std::span<RayHits> answers) const {
+           std::array<FoundHits, rays_at_once>& found, std::span<RayHits> answers) const {
     std::vector<RayTask> tasks;
     tasks.reserve(rays.size());
     for (const Ray& ray : rays) tasks.push_back(task_of(ray));
-    std::array<FoundHits, rays_at_once> found;
     walk_rays(workspace, tasks, monitor_, std::span(found).first(rays.size()));
     for (std::size_t i = 0; i < rays.size(); ++i)
       answers[i] = finished(found[i], tasks[i], rays[i], evaluator);
@@ -123,8 +122,10 @@ class RaySearch {
 RayHits ray(const Surface& surface, const Ray& ray, const RayOptions& options, const Run& run) {
   PieceCache& workspace = workspace_of(run).pieces().of(surface);
   SurfaceEvaluator evaluator(workspace.model().surface());
+  std::array<FoundHits, rays_at_once> found;
   RayHits answer;
-  RaySearch(workspace.model().surface(), options, run).ask(workspace, evaluator, {&ray, 1}, {&answer, 1});
+  RaySearch(workspace.model().surface(), options, run)
+      .ask(workspace, evaluator, {&ray, 1}, found, {&answer, 1});
   certify(run, surface, {&ray, 1}, options.query, {&answer, 1});
   return answer;
 }
@@ -140,9 +141,11 @@ std::vector<RayHits> ray(const Surface& surface, std::span<const Ray> rays, cons
   workers_of(run).for_each_range(groups, [&](Workspace& state, std::size_t begin, std::size_t end) {
     PieceCache& workspace = state.pieces().of(surface);
     SurfaceEvaluator evaluator(limit);
+    std::array<FoundHits, rays_at_once> found;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = i * rays_at_once, count = std::min(rays_at_once, rays.size() - first);
-      search.ask(workspace, evaluator, rays.subspan(first, count), std::span(answers).subspan(first, count));
+      search.ask(workspace, evaluator, rays.subspan(first, count), found,
+                 std::span(answers).subspan(first, count));
     }
     monitor_of(run).report(static_cast<double>(done += end - begin) / static_cast<double>(groups));
   });

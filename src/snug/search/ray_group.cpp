@@ -90,7 +90,7 @@ RayGroup::RayGroup(PieceCache& cache, std::span<GroupedRay> rays, const WorkMoni
 
 void RayGroup::set_limit(std::size_t i) {
   const GroupedRay& ray = rays_[i];
-  const bool answered = ray.task->query == RayQuery::any && !ray.found.hits.empty();
+  const bool answered = ray.task->query == RayQuery::any && !ray.found->hits.empty();
   const bool lost = ray.task->query == RayQuery::all && ray.failed < INFINITY;
   limits_[i] = answered || lost ? -INFINITY : ray.near.from_middle(std::min(ray.end, ray.failed));
 }
@@ -102,9 +102,9 @@ void RayGroup::run() {
   frontier.start(Order::nearest_first, all);
   search(frontier, *this);
   for (GroupedRay& ray : rays_) {
-    if (!ray.decided()) ray.found = {};
-    if (ray.task->query == RayQuery::nearest) keep_nearest(*ray.task, ray.end, ray.found.hits);
-    ray.found.sort();
+    if (!ray.decided()) ray.found->hits.clear();
+    if (ray.task->query == RayQuery::nearest) keep_nearest(*ray.task, ray.end, ray.found->hits);
+    ray.found->sort();
   }
 }
 
@@ -161,7 +161,7 @@ bool RayGroup::is_to_be_opened(const NodeRays& at, std::size_t i, bool in_vain) 
   if (hit) {
     const bool narrow = task.is_located(crossing.along);
     if (narrow || task.query == RayQuery::any) {
-      ray.found.hits.push_back(
+      ray.found->hits.push_back(
           {crossing.along, true, narrow, crossing.side, cache_.name(at.node), crossing.at});
     }
     if (task.query == RayQuery::nearest) ray.end = std::min(ray.end, crossing.along.upper);

@@ -24,14 +24,14 @@ inline constexpr double tube_share = 0x1p-5;
 struct GroupedRay {
   const RayTask* task;
   NearPart near;
+  FoundHits* found;
   std::optional<RayFrame> frame{};  ///< once a piece is seen
   double end = near.upper;          ///< nothing behind it matters
   double failed = INFINITY;         ///< where a piece begins that proves nothing, at the earliest
   std::uint64_t splits = 0;
-  FoundHits found{};
 
   [[nodiscard]] bool decided() const {
-    return task->query == RayQuery::any && !found.hits.empty() ? true : !(failed <= end);
+    return task->query == RayQuery::any && !found->hits.empty() ? true : !(failed <= end);
   }
 };
 

@@ -351,16 +351,15 @@ void walk_rays(PieceCache& cache, std::span<const RayTask> tasks, const WorkMoni
   const Ball& ball = cache.model().tree().ball();
   std::vector<GroupedRay> rays;
   rays.reserve(tasks.size());
-  std::array<std::size_t, rays_at_once> numbers;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const NearPart near(tasks[i], ball);
-    found[i] = {};
+    found[i].hits.clear();
+    found[i].complete = true;
     if (!near.bounded() || near.empty()) {
       found[i].complete = near.bounded();
       continue;
     }
-    numbers[rays.size()] = i;
-    rays.push_back({&tasks[i], near});
+    rays.push_back({&tasks[i], near, &found[i]});
   }
   for (std::size_t begin = 0, end; begin < rays.size(); begin = end) {
     const std::size_t most = std::min(rays.size(), begin + kernels::ray_width);
@@ -371,9 +370,8 @@ void walk_rays(PieceCache& cache, std::span<const RayTask> tasks, const WorkMoni
     cache.begin();
     RayGroup(cache, group, monitor).run();
   }
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    found[numbers[i]] =
-        rays[i].decided() ? std::move(rays[i].found) : TubeWalk(cache, rays[i], monitor).run();
+  for (const GroupedRay& ray : rays) {
+    if (!ray.decided()) *ray.found = TubeWalk(cache, ray, monitor).run();
   }
 }
 
