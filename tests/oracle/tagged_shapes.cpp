@@ -1,6 +1,7 @@
 #include <oracle/tagged_shapes.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace oracle::meshes {
@@ -103,6 +104,34 @@ TaggedMesh two_cubes_at_a_vertex() {
     Polygon p;
     for (const std::uint32_t v : mesh.polygons[f]) p.insert(p.begin(), v == 0 ? 0 : v + 7);
     mesh.polygons.push_back(p);
+  }
+  return mesh;
+}
+
+TaggedMesh cells(const std::set<std::array<int, 3>>& corners) {
+  TaggedMesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> numbers;
+  for (const std::array<int, 3>& cell : corners) {
+    for (const Polygon& side : cube().polygons) {
+      std::array<int, 3> beside = cell;
+      for (std::size_t x = 0; x < 3; ++x) {
+        int sum = 0;  // of the corners' places: 0 or 4 along the axis that the side is across
+        for (const std::uint32_t v : side) sum += static_cast<int>(v >> x & 1U);
+        if (sum % 4 == 0) beside[x] += sum == 0 ? -1 : 1;
+      }
+      if (corners.contains(beside)) continue;
+      Polygon face;
+      for (const std::uint32_t v : side) {
+        std::array<int, 3> at = cell;
+        for (std::size_t x = 0; x < 3; ++x) at[x] += static_cast<int>(v >> x & 1U);
+        const auto [it, is_new] = numbers.try_emplace(at, static_cast<std::uint32_t>(mesh.points.size()));
+        if (is_new)
+          mesh.points.push_back(
+              {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])});
+        face.push_back(it->second);
+      }
+      mesh.polygons.push_back(face);
+    }
   }
   return mesh;
 }

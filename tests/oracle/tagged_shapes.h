@@ -2,8 +2,10 @@
 
 #include <oracle/tagged_mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <random>
+#include <set>
 
 /// Small control meshes with tags or flaws.
 namespace oracle::meshes {
@@ -16,6 +18,8 @@ namespace oracle::meshes {
 [[nodiscard]] TaggedMesh mixed_strip();  ///< open: triangle, quad, pentagon, triangle around one vertex
 [[nodiscard]] TaggedMesh book(std::uint32_t pages);  ///< quads on a common spine of two edges
 [[nodiscard]] TaggedMesh two_cubes_at_a_vertex();
+/// What is around some unit cubes with these least corners: a quad between each and each that is not among them, turned outwards.
+[[nodiscard]] TaggedMesh cells(const std::set<std::array<int, 3>>& corners);
 [[nodiscard]] TaggedMesh moebius(std::uint32_t n);  ///< n quads; one edge is crossed against its direction
 [[nodiscard]] TaggedMesh back_to_back();            ///< two quads with the same four corners: valence 2
 [[nodiscard]] TaggedMesh

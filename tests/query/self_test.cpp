@@ -176,6 +176,9 @@ TEST(self_contact, collapsed_meshes_are_undecided_and_pinched_ones_are_clear) {
     EXPECT_NE(ask(flat, scheme, {}, {.max_splits = 20'000}).verdict, SelfVerdict::clear) << name_of(scheme);
   }
   EXPECT_EQ(ask(meshes::two_cubes_at_a_vertex(), Scheme::catmark).verdict, SelfVerdict::clear);
+  EXPECT_EQ(ask(meshes::cells({{0, 0, 0}, {1, 1, 0}}), Scheme::catmark).verdict, SelfVerdict::clear);
+  EXPECT_EQ(ask(meshes::cells({{0, 0, 0}, {0, 0, 1}, {1, 1, 0}, {1, 1, 1}}), Scheme::catmark).verdict,
+            SelfVerdict::clear);
   EXPECT_NE(ask(meshes::back_to_back(), Scheme::catmark, {}, {.max_splits = 20'000}).verdict,
             SelfVerdict::clear);
 }

@@ -15,9 +15,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
 namespace snug::self_test {
 namespace {
@@ -717,6 +719,47 @@ TEST(self, verdicts_with_all_tags_are_those_of_refined_meshes) {
   }
   EXPECT_GT(4 * counts["clear, twin does not"], count);
   EXPECT_GT(16 * counts["intersecting, twin crosses"], count);
+}
+
+// Unit cubes that have edges or vertices alone in common, among others, moved and tagged.
+TEST(self, verdicts_of_cells_are_those_of_refined_ones) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1) * testing::share(32));
+  std::mt19937_64 random(9);
+  std::map<std::string, int> counts;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::set<std::array<int, 3>> corners{{0, 0, 0}};
+    for (const std::size_t count = 2 + random() % 4; corners.size() < count;) {
+      std::array<int, 3> cell =
+          *std::next(corners.begin(), static_cast<std::ptrdiff_t>(random() % corners.size()));
+      // Across an edge two times of three, else a side or a vertex.
+      const std::size_t along = random() % 3, kind = random() % 6;
+      for (std::size_t x = 0; x < 3; ++x) {
+        const bool moves = kind < 4 ? x != along : kind == 4 ? x == along : true;
+        if (moves) cell[x] += random() % 2 == 0 ? 1 : -1;
+      }
+      corners.insert(cell);
+    }
+    const bool triangles = trial % 3 == 0, tagged = random() % 2 == 0;
+    const oracle::TaggedMesh plain = oracle::meshes::cells(corners);
+    oracle::TaggedMesh mesh = oracle::meshes::shaken(triangles ? oracle::meshes::triangulated(plain) : plain,
+                                                     one_of({0.0, 0.1, 0.4}, random), random);
+    oracle::Rules rules;
+    rules.scheme = triangles ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+    if (tagged) testing::tag(mesh, random, false);
+    const Surface surface(testing::control_mesh(mesh, rules));
+    const SelfContact found = self_contact(surface, {}, {.max_splits = 20'000});
+    const oracle::TaggedMesh coarse = oracle::refine(mesh, rules, 4);
+    const bool crossing = crosses(coarse, 0.0015);
+    ++counts[std::string(triangles ? "loop, " : "catmark, ") + name_of(found.verdict) +
+             (crossing ? ", twin crosses" : ", twin does not")];
+    if (crossing) {
+      EXPECT_NE(found.verdict, SelfVerdict::clear) << "trial " << trial;
+    } else if (found.verdict == SelfVerdict::intersecting) {
+      EXPECT_TRUE(is_shown({mesh, rules, surface.scheme(), {}}, found.pairs[0], coarse)) << "trial " << trial;
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  EXPECT_GT(counts["catmark, clear, twin does not"], trials / 8);
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ struct TaggedCase {
           {"book 3", meshes::book(3)},
           {"book 4", meshes::book(4)},
           {"cubes at a vertex", meshes::two_cubes_at_a_vertex()},
+          {"cells at edges", meshes::cells({{0, 0, 0}, {0, 0, 1}, {1, 1, 0}, {1, 1, 1}, {2, 0, 1}})},
           {"moebius", meshes::moebius(5)},
           {"back to back", meshes::back_to_back()},
           {"same ways", meshes::same_ways()},

@@ -69,7 +69,7 @@ void Topology::find_fans() {
   face_counts_.assign(vertex_count(), 0);
   for (HalfEdge h = 0; h < half_edge_count(); ++h) {
     HalfEdge& best = leaving_[from(h).index()];
-    if (best == no_half_edge || twins_[h] == no_half_edge) best = h;
+    if (best == no_half_edge || (twins_[h] == no_half_edge && twins_[best] != no_half_edge)) best = h;
     ++face_counts_[from(h).index()];
   }
   std::vector<VertexId> pinched;

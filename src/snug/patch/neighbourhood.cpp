@@ -33,8 +33,9 @@ class Hash {
 
 // A corner as its patch sees it.
 struct CornerView {
-  CornerFan fan;  // when all that decays has decayed
-  bool plain;     // the fan says everything
+  CornerFan fan;                   // when all that decays has decayed
+  bool plain;                      // the fan says everything
+  bool own_fan_is_enough = false;  // no other fan at the vertex matters
 };
 
 CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdge corner,
@@ -68,6 +69,7 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
     cutting = fan.sharp || infinite == 2;
     fan.odd = !cutting && infinite == 1;
   }
+  const bool stationary = view.plain;
   const auto ends = [&](HalfEdge h) {  // may the fan not go on across this half-edge?
     const EdgeId e = topology.edge_of(h);
     return topology.ends_fans(e) ||
@@ -103,6 +105,9 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
     fan.sharp = vertex_sharpness(topology, sharpness, v, options.boundary) >= infinite_sharpness;
   }
   view.plain = view.plain && standard && !fan.odd;
+  // Where the vertex stays, or lies on a crease that the fan ends at on both sides. Sharpness that is averaged sees all edges.
+  view.own_fan_is_enough =
+      options.creases == CreaseMethod::uniform && (fan.sharp || (stationary && !fan.odd));
   return view;
 }
 
@@ -137,8 +142,10 @@ std::vector<VertexId> spoke_ends(const Topology& topology, HalfEdge start) {
 }
 
 // The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where
-// it was met; then, if wide, those around the far ends of the edges at the corners.
-std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Scheme scheme, bool wide) {
+// it was met: whole fans, where the own one is enough those alone that others of these faces belong to. Then, if wide, those around the
+// far ends of the edges at the corners.
+std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Scheme scheme,
+                                   const OwnFans& own_fans, bool wide) {
   if (rules_of(scheme).local) return {start};
   thread_local CompactNumbering met;
   met.begin(topology.face_count());
@@ -146,14 +153,33 @@ std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Sch
   const auto add = [&](HalfEdge h) {
     if (met.number(topology.face_of(h).index()) == found.size()) found.push_back(h);
   };
+  const auto add_fan = [&](HalfEdge of) {
+    topology.walk_fan(of, add);
+    for (HalfEdge h = topology.cw(of); h != no_half_edge && h != of; h = topology.cw(h)) add(h);
+  };
   add(start);
+  std::vector<VertexId> seen_by_own_fan;
   HalfEdge corner = start;
+  std::size_t k = 0;
   do {
-    topology.walk_fan(corner, add);
-    for (HalfEdge h = topology.cw(corner); h != no_half_edge && h != corner; h = topology.cw(h)) add(h);
-    walk_fans(topology, topology.from(corner), add);
+    add_fan(corner);
+    if (k < own_fans.size() && own_fans[k] && !topology.is_manifold()) {
+      seen_by_own_fan.push_back(topology.from(corner));
+    } else {
+      walk_fans(topology, topology.from(corner), add);
+    }
     corner = topology.next(corner);
+    ++k;
   } while (corner != start);
+  for (std::size_t i = 0; !seen_by_own_fan.empty() && i < found.size(); ++i) {
+    HalfEdge h = found[i];
+    do {
+      if (std::find(seen_by_own_fan.begin(), seen_by_own_fan.end(), topology.from(h)) !=
+          seen_by_own_fan.end())
+        add_fan(h);
+      h = topology.next(h);
+    } while (h != found[i]);
+  }
   if (!wide) return found;
   for (const VertexId end : spoke_ends(topology, start)) walk_fans(topology, end, add);
   return found;
@@ -183,11 +209,12 @@ void keep_only(std::vector<double>& sharpness, const Keeps& keeps) {
 // The neighbourhood of a patch whose corners' fans do not determine it, with the sharpness at its corners or, if
 // that depends on edges which do not touch them, at the far ends of their edges too.
 std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, HalfEdge start,
+                                                  const KindKey& key, const OwnFans& own_fans,
                                                   const SchemeOptions& options, const Sharpness& sharpness) {
   const bool local = rules_of(options.scheme).local;
   const bool wide = !local && is_wide({topology, options, sharpness}, start);
-  PartOfMesh part =
-      part_of(topology, sharpness, options.boundary, faces_around(topology, start, options.scheme, wide));
+  PartOfMesh part = part_of(topology, sharpness, options.boundary,
+                            faces_around(topology, start, options.scheme, own_fans, wide));
   Sharpness& kept = part.sharpness;
   // The corners are the first vertices; fewer than the face has if it names one twice.
   std::size_t corners = 0;
@@ -195,6 +222,12 @@ std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, Half
     if (!local) corners = std::max(corners, v.index() + 1);
   }
   keep_only(kept.vertices, [&](std::size_t v) { return v < corners; });
+  // Edges that make a vertex sharp may be in other fans.
+  for (std::size_t k = 0; k < own_fans.size(); ++k) {
+    if (!own_fans[k] || !key.corners[k].sharp) continue;
+    kept.vertices.resize(part.names.size(), 0.0);
+    kept.vertices[part.topology.face(FaceId(0))[k].index()] = infinite_sharpness;
+  }
   std::vector<bool> near(part.names.size(), false);
   std::fill_n(near.begin(), corners, true);
   if (wide) {
@@ -209,14 +242,15 @@ std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, Half
       Neighbourhood{std::move(part.topology),
                     std::move(kept),
                     {options.scheme, BoundaryRule::edge_only, options.creases, options.triangles},
-                    wide});
+                    wide,
+                    own_fans});
 }
 
 }  // namespace
 
 bool operator==(const Neighbourhood& a, const Neighbourhood& b) {
-  if (a.hash != b.hash || a.wide != b.wide || a.options != b.options || a.sharpness != b.sharpness ||
-      a.topology.face_count() != b.topology.face_count()) {
+  if (a.hash != b.hash || a.wide != b.wide || a.own_fans != b.own_fans || a.options != b.options ||
+      a.sharpness != b.sharpness || a.topology.face_count() != b.topology.face_count()) {
     return false;
   }
   for (std::size_t f = 0; f < a.topology.face_count(); ++f) {
@@ -226,8 +260,9 @@ bool operator==(const Neighbourhood& a, const Neighbourhood& b) {
   return true;
 }
 
-Neighbourhood::Neighbourhood(Topology faces, Sharpness sharp, const SchemeOptions& rules, bool is_wide)
-    : topology(std::move(faces)), sharpness(std::move(sharp)), options(rules), wide(is_wide) {
+Neighbourhood::Neighbourhood(Topology faces, Sharpness sharp, const SchemeOptions& rules, bool is_wide,
+                             const OwnFans& own)
+    : topology(std::move(faces)), sharpness(std::move(sharp)), options(rules), wide(is_wide), own_fans(own) {
   Hash all;
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const auto face = topology.face(FaceId(f));
@@ -263,15 +298,17 @@ KindKey kind_key_from(const Topology& topology, HalfEdge start, const SchemeOpti
   const std::size_t size = topology.face(topology.face_of(start)).size();
   key.polygon = size != rules.corners;
   bool plain = !key.polygon;
+  OwnFans own_fans{};
   if (!key.polygon) {
     HalfEdge h = start;
     for (std::size_t i = 0; i < size; ++i, h = topology.next(h)) {
       const CornerView view = view_of(topology, sharpness, h, options);
       key.corners[i] = view.fan;
       plain = plain && view.plain;
+      own_fans[i] = view.own_fan_is_enough;
     }
   }
-  if (!plain) key.around = surroundings(topology, start, options, sharpness);
+  if (!plain) key.around = surroundings(topology, start, key, own_fans, options, sharpness);
   return key;
 }
 
@@ -306,7 +343,10 @@ Neighbourhood neighbourhood(const KindKey& key) {
 }
 
 ControlOrder::ControlOrder(const KindKey& key, const Topology& around) : scheme_(key.scheme) {
-  wide_ = key.around && key.around->wide;
+  if (key.around) {
+    wide_ = key.around->wide;
+    own_fans_ = key.around->own_fans;
+  }
   const SchemeRules& rules = rules_of(scheme_);
   if (key.around && rules.primal) return;
   // Where the walk enters each face.
@@ -340,7 +380,7 @@ ControlOrder::ControlOrder(const KindKey& key, const Topology& around) : scheme_
 
 void ControlOrder::operator()(const Topology& topology, HalfEdge start, std::vector<VertexId>& out) const {
   if (vertices_.empty()) {
-    vertices_of(topology, faces_around(topology, start, scheme_, wide_), out);
+    vertices_of(topology, faces_around(topology, start, scheme_, own_fans_, wide_), out);
     return;
   }
   // A face that was entered: its half-edges, and which of them was met.

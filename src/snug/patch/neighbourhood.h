@@ -12,14 +12,19 @@
 
 namespace snug {
 
+/// Of a patch's corners, those where no other fan at the vertex matters.
+using OwnFans = std::array<bool, 4>;
+
 /// The faces around a patch as a mesh, as SchemeRules::ring() counts: vertex i is its control vertex i.
 struct Neighbourhood {
   Topology topology;
   Sharpness sharpness;    ///< where it matters to the patch
   SchemeOptions options;  ///< under which it refines as it does inside its mesh
   bool wide;              ///< Does it reach to the faces around the far ends of the corners' edges?
+  OwnFans own_fans;       ///< corners of which not all fans are here
   std::size_t hash;       ///< of all this
-  Neighbourhood(Topology faces, Sharpness sharp, const SchemeOptions& rules, bool is_wide = false);
+  Neighbourhood(Topology faces, Sharpness sharp, const SchemeOptions& rules, bool is_wide = false,
+                const OwnFans& own = {});
   [[nodiscard]] RuledMesh ruled() const { return {topology, options, sharpness}; }
   friend bool operator==(const Neighbourhood& a, const Neighbourhood& b);
 };
@@ -84,6 +89,7 @@ class ControlOrder {
   };
   Scheme scheme_;
   bool wide_ = false;
+  OwnFans own_fans_{};
   std::vector<Step> faces_;     // which the faces after the first are entered across
   std::vector<Step> vertices_;  // which leave the control vertices; none: as the faces around name them
 };

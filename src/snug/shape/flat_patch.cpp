@@ -29,7 +29,8 @@ bool ends_fan(const Patch& patch, unsigned corner, unsigned edge) {
   // Not the line through a quad that its halves share.
   const bool of_face = patch.kind->rules().triangular() || patch.to_kind(edge) != 2;
   const bool at_corner = corner == edge || corner == (edge + 1) % 3;
-  return at_corner && !fan.closed && !fan.odd && of_face && (corner == edge ? fan.before : fan.after) == 0;
+  return at_corner && !fan.closed && (!fan.odd || fan.sharp) && of_face &&
+         (corner == edge ? fan.before : fan.after) == 0;
 }
 
 // Continues its half that is away from the corner.
