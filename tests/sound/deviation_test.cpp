@@ -810,7 +810,7 @@ TEST(deviation, of_curved_surfaces_is_not_below_what_points_say) {
             << counts.share / static_cast<double>(counts.asked) << " of the upper ends; " << counts.unreached
             << " not as narrow as asked; " << pairs.missing() << " pairs of choices not drawn\n";
   EXPECT_GT(10 * counts.asked, 8 * trials);
-  EXPECT_LE(50 * counts.unreached, counts.asked + 100);
+  EXPECT_LE(50 * counts.unreached, counts.asked + 150);
   EXPECT_TRUE(trials < usual_curved / 4 || pairs.missing() == possible.missing());
 }
 
