@@ -153,16 +153,13 @@ std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Sch
   const auto add = [&](HalfEdge h) {
     if (met.number(topology.face_of(h).index()) == found.size()) found.push_back(h);
   };
-  const auto add_fan = [&](HalfEdge of) {
-    topology.walk_fan(of, add);
-    for (HalfEdge h = topology.cw(of); h != no_half_edge && h != of; h = topology.cw(h)) add(h);
-  };
   add(start);
   std::vector<VertexId> seen_by_own_fan;
   HalfEdge corner = start;
   std::size_t k = 0;
   do {
-    add_fan(corner);
+    topology.walk_fan(corner, add);
+    for (HalfEdge h = topology.cw(corner); h != no_half_edge && h != corner; h = topology.cw(h)) add(h);
     if (k < own_fans.size() && own_fans[k] && !topology.is_manifold()) {
       seen_by_own_fan.push_back(topology.from(corner));
     } else {
@@ -175,8 +172,11 @@ std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Sch
     HalfEdge h = found[i];
     do {
       if (std::find(seen_by_own_fan.begin(), seen_by_own_fan.end(), topology.from(h)) !=
-          seen_by_own_fan.end())
-        add_fan(h);
+          seen_by_own_fan.end()) {
+        for (const HalfEdge beside : {topology.ccw(h), topology.cw(h)}) {
+          if (beside != no_half_edge) add(beside);
+        }
+      }
       h = topology.next(h);
     } while (h != found[i]);
   }

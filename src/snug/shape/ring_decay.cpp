@@ -283,6 +283,10 @@ bool is_largest(const Kind& kind, std::size_t corner, const Interval& eigenvalue
 
 std::optional<LastingRows> rows_across_spike(const Kind& kind, std::size_t corner, const Stencils& step) {
   if (kind.corner(corner).odd) {
+    // Of all faces at the vertex, not of some of another fan: then all sectors have one direction of the largest.
+    const Neighbourhood around = neighbourhood(kind.key());
+    const VertexId vertex = around.topology.from(kind.rules().corner_of(around.topology, corner));
+    if (around.topology.face_valence(vertex) != kind.corner(corner).faces()) return std::nullopt;
     std::optional<LastingRows> rows = find_lasting_rows(step, kind.control_count(), true);
     if (!rows || !is_largest(kind, corner, rows->spike->ratio * rows->least)) return std::nullopt;
     return rows;
