@@ -1,7 +1,9 @@
 #include <snug/io/zip.h>
 
+#include <algorithm>
 #include <random>
 #include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -37,6 +39,24 @@ TEST(zip, what_is_written_is_read_back) {
   }
   EXPECT_LT(archive_of("a", text).size(), text.size() / 4);
   EXPECT_EQ(archive_of("a", text), archive_of("a", text));
+}
+
+TEST(zip, how_bytes_are_cut_makes_no_difference) {
+  std::mt19937 random(3);
+  std::string text;
+  for (int i = 0; i < 60'000; ++i) text += "<vertex x=\"" + std::to_string(random() % 1000) + "\"/>\n";
+  for (const std::size_t most : {std::size_t{1}, std::size_t{70}, std::size_t{100'000}}) {
+    ZipWriter writer;
+    writer.add("first", "");
+    writer.add("a", [&](const ZipWriter::Append& append) {
+      for (std::size_t at = 0; at < text.size();) {
+        const std::size_t size = std::min(text.size() - at, 1 + random() % most);
+        append(std::string_view(text).substr(at, size));
+        at += size;
+      }
+    });
+    EXPECT_TRUE(writer.finish("out.zip") == archive_of("a", text));
+  }
 }
 
 TEST(zip, every_truncation_is_refused) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -68,9 +69,9 @@ void append_view(std::string& json, std::size_t begin, std::size_t size, const c
   json += target;
 }
 
-/// `uri`: of the buffer; empty for the chunk of a binary file.
+/// `append_uri`: appends the URI of the buffer; empty for the chunk of a binary file.
 std::string describe(const std::vector<Position>& positions, bool normals, std::size_t triangles,
-                     std::string_view uri) {
+                     const std::function<void(std::string&)>& append_uri) {
   constexpr const char *vertices = ",\"target\":34962}", *indices = ",\"target\":34963}";
   const std::size_t vector_bytes = positions.size() * position_size;
   const std::size_t index_bytes = 3 * triangles * index_size;
@@ -80,7 +81,11 @@ std::string describe(const std::vector<Position>& positions, bool normals, std::
   json += normals ? R"(,"NORMAL":2},"indices":1,"mode":4}]}],)" : R"(},"indices":1,"mode":4}]}],)";
   json += R"("buffers":[{"byteLength":)";
   append_integer(json, vectors + index_bytes);
-  if (!uri.empty()) json.append(R"(,"uri":")").append(uri) += '"';
+  if (append_uri) {
+    json += R"(,"uri":")";
+    append_uri(json);
+    json += '"';
+  }
   json += R"(}],"bufferViews":[)";
   append_view(json, 0, vector_bytes, vertices);
   append_view(json, vectors, index_bytes, indices);
@@ -102,31 +107,29 @@ std::string describe(const std::vector<Position>& positions, bool normals, std::
   return json;
 }
 
-void append_normals(std::string& bytes, std::span<const Vector3> normals) {
-  for (const Vector3& normal : normals) {
-    const Vector3 written = normal == Vector3{} ? Vector3{0, 0, 1} : normal;
-    for (std::size_t axis = 0; axis < 3; ++axis) append_binary(bytes, static_cast<float>(written[axis]));
-  }
+std::size_t buffer_size(std::size_t vertices, std::size_t normals, std::size_t triangles) {
+  return (vertices + normals) * position_size + 3 * triangles * index_size;
 }
 
-/// Positions, normals and indices: whole words, nothing is left to pad.
-std::string buffer_of(const ControlMesh& mesh, const std::vector<Position>& positions,
-                      std::span<const Vector3> normals, std::size_t triangles) {
-  std::string bytes;
-  bytes.reserve((positions.size() + normals.size()) * position_size + 3 * triangles * index_size);
+/// Calls put(number) for positions, normals and indices: whole words, nothing is left to pad.
+template <class Put>
+void put_buffer(const ControlMesh& mesh, const std::vector<Position>& positions,
+                std::span<const Vector3> normals, const Put& put) {
   for (const Position& position : positions) {
-    for (const float x : position) append_binary(bytes, x);
+    for (const float x : position) put(x);
   }
-  append_normals(bytes, normals);
+  for (const Vector3& normal : normals) {
+    const Vector3 written = normal == Vector3{} ? Vector3{0, 0, 1} : normal;
+    for (std::size_t axis = 0; axis < 3; ++axis) put(static_cast<float>(written[axis]));
+  }
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const auto corners = mesh.face(FaceId(face));
     for (std::size_t corner = 2; corner < corners.size(); ++corner) {
-      append_binary(bytes, corners[0].value());
-      append_binary(bytes, corners[corner - 1].value());
-      append_binary(bytes, corners[corner].value());
+      put(corners[0].value());
+      put(corners[corner - 1].value());
+      put(corners[corner].value());
     }
   }
-  return bytes;
 }
 
 }  // namespace
@@ -137,9 +140,8 @@ std::string format_glb(const ControlMesh& mesh, const std::string& name, const N
   const std::size_t triangles = count_triangles(mesh, name, notes);
   const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
   const std::string json = describe(positions, !normals.empty(), triangles, {});
-  const std::string buffer = buffer_of(mesh, positions, normals, triangles);
-  const std::size_t size =
-      glb_header_size + glb_chunk_head_size + json.size() + glb_chunk_head_size + buffer.size();
+  const std::size_t buffer = buffer_size(positions.size(), normals.size(), triangles);
+  const std::size_t size = glb_header_size + glb_chunk_head_size + json.size() + glb_chunk_head_size + buffer;
   if (size > std::numeric_limits<std::uint32_t>::max()) {
     refuse(name, "the mesh takes more than the 4 GiB of a binary glTF file: write PLY");
   }
@@ -150,9 +152,9 @@ std::string format_glb(const ControlMesh& mesh, const std::string& name, const N
   append_binary(bytes, static_cast<std::uint32_t>(json.size()));
   bytes += "JSON";
   bytes += json;
-  append_binary(bytes, static_cast<std::uint32_t>(buffer.size()));
+  append_binary(bytes, static_cast<std::uint32_t>(buffer));
   bytes.append("BIN\0", 4);
-  bytes += buffer;
+  put_buffer(mesh, positions, normals, [&](auto number) { append_binary(bytes, number); });
   return bytes;
 }
 
@@ -161,9 +163,19 @@ std::string format_gltf(const ControlMesh& mesh, const std::string& name, const 
   SNUG_EXPECT(normals.empty() || normals.size() == mesh.vertex_count());
   const std::size_t triangles = count_triangles(mesh, name, notes);
   const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
-  std::string uri = "data:application/octet-stream;base64,";
-  append_base64(uri, buffer_of(mesh, positions, normals, triangles));
-  return describe(positions, !normals.empty(), triangles, uri);
+  return describe(positions, !normals.empty(), triangles, [&](std::string& json) {
+    json.reserve(json.size() + buffer_size(positions.size(), normals.size(), triangles) / 3 * 4 + 1024);
+    json += "data:application/octet-stream;base64,";
+    constexpr std::size_t part_size = 3 * 4096;  // words and groups of base64 end with it
+    std::string part;
+    put_buffer(mesh, positions, normals, [&](auto number) {
+      append_binary(part, number);
+      if (part.size() < part_size) return;
+      append_base64(json, part);
+      part.clear();
+    });
+    append_base64(json, part);
+  });
 }
 
 }  // namespace snug

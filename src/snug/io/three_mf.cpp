@@ -365,10 +365,11 @@ std::string_view unit_of(const ControlMesh& mesh, const std::string& name, const
   throw InputError(InputProblem::refused, text + " metres; it has " + listed(all_names(units), "and"));
 }
 
-// The root model of a package.
+// The root model of a package, handed on part by part.
 class ModelWriter {
  public:
-  ModelWriter(std::string_view unit, const std::string& name) : name_(name) {
+  ModelWriter(std::string_view unit, const std::string& name, const ZipWriter::Append& append)
+      : name_(name), append_(append) {
     text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"";
     text_.append(unit).append("\" xml:lang=\"en-US\" xmlns=\"").append(core_namespace);
     text_ += "\">\n<resources>\n";
@@ -377,7 +378,6 @@ class ModelWriter {
   /// An object; returns its id.
   std::uint32_t add(const ControlMesh& mesh, std::string_view name) {
     begin_object(name);
-    text_.reserve(text_.size() + 70 * mesh.vertex_count() + 40 * mesh.face_vertices.size());
     text_ += "<mesh>\n<vertices>\n";
     for (const Point3& point : mesh.points) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -385,6 +385,7 @@ class ModelWriter {
         append_real(text_, point[axis]);
       }
       text_ += "\"/>\n";
+      if (text_.size() >= part_size) send();
     }
     text_ += "</vertices>\n<triangles>\n";
     for (std::size_t f = 0; f < mesh.face_count(); ++f) add_face(mesh.face(FaceId(f)), f);
@@ -412,11 +413,19 @@ class ModelWriter {
             " triangles that name a vertex twice are left out: 3MF has none");
     }
   }
-  [[nodiscard]] std::string finish() {
-    return std::move(text_.append("</resources>\n<build>\n").append(items_).append("</build>\n</model>\n"));
+  void finish() {
+    text_.append("</resources>\n<build>\n").append(items_).append("</build>\n</model>\n");
+    send();
   }
 
  private:
+  static constexpr std::size_t part_size = std::size_t{1} << 16;
+
+  void send() {
+    append_(text_);
+    text_.clear();
+  }
+
   void begin_object(std::string_view name) {
     text_ += "<object id=\"";
     append_integer(text_, ++objects_);
@@ -446,6 +455,7 @@ class ModelWriter {
         append_integer(text_, triangle[i].value());
       }
       text_ += "\"/>\n";
+      if (text_.size() >= part_size) send();
     }
   }
 
@@ -465,13 +475,17 @@ class ModelWriter {
   }
 
   const std::string& name_;
+  const ZipWriter::Append& append_;
   std::string text_, items_;
   std::uint32_t objects_ = 0;
   bool polygons_ = false;
   std::size_t degenerate_ = 0;
 };
 
-std::string package_of(std::string model, const std::string& name) {
+// Of what write(model) adds to the root model.
+template <class Write>
+std::string package_of(std::string_view unit, const std::string& name, const Notes& notes,
+                       const Write& write) {
   ZipWriter archive;
   archive.add(
       "[Content_Types].xml",
@@ -485,7 +499,12 @@ std::string package_of(std::string model, const std::string& name) {
               "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
               "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
               "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n");
-  archive.add("3D/3dmodel.model", std::move(model));
+  archive.add("3D/3dmodel.model", [&](const ZipWriter::Append& append) {
+    ModelWriter model(unit, name, append);
+    write(model);
+    model.write_notes(notes);
+    model.finish();
+  });
   return archive.finish(name);
 }
 
@@ -504,10 +523,9 @@ ControlMesh parse_3mf(std::string_view bytes, const std::string& name, const Not
 }
 
 std::string format_3mf(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
-  ModelWriter model(unit_of(mesh, name, notes), name);
-  model.build(model.add(mesh, std::filesystem::path(name).stem().string()), {});
-  model.write_notes(notes);
-  return package_of(model.finish(), name);
+  return package_of(unit_of(mesh, name, notes), name, notes, [&](ModelWriter& model) {
+    model.build(model.add(mesh, std::filesystem::path(name).stem().string()), {});
+  });
 }
 
 std::string format_3mf(const MeshAssembly& assembly, const std::string& name, const Notes& notes) {
@@ -520,20 +538,19 @@ std::string format_3mf(const MeshAssembly& assembly, const std::string& name, co
       throw InputError(InputProblem::refused, name + ": 3MF files are in one unit, the parts are not");
     ++uses[part.mesh];
   }
-  ModelWriter model(unit.value_or("millimeter"), name);
-  std::vector<std::uint32_t> objects(assembly.meshes.size());
-  for (const MeshAssembly::Part& part : assembly.parts) {
-    const bool shared = uses[part.mesh] > 1;
-    std::uint32_t& object = objects[part.mesh];
-    if (object == 0) object = model.add(assembly.meshes[part.mesh], shared ? "" : part.name);
-    if (shared) {
-      model.build(model.add(object, part.name, part.pose), {});
-    } else {
-      model.build(object, part.pose);
+  return package_of(unit.value_or("millimeter"), name, notes, [&](ModelWriter& model) {
+    std::vector<std::uint32_t> objects(assembly.meshes.size());
+    for (const MeshAssembly::Part& part : assembly.parts) {
+      const bool shared = uses[part.mesh] > 1;
+      std::uint32_t& object = objects[part.mesh];
+      if (object == 0) object = model.add(assembly.meshes[part.mesh], shared ? "" : part.name);
+      if (shared) {
+        model.build(model.add(object, part.name, part.pose), {});
+      } else {
+        model.build(object, part.pose);
+      }
     }
-  }
-  model.write_notes(notes);
-  return package_of(model.finish(), name);
+  });
 }
 
 }  // namespace snug

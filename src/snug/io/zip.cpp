@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include <support/binary.h>
@@ -27,7 +28,8 @@ Number number_at(std::string_view bytes, std::size_t at) {
   return load<Number>(bytes.data() + at, std::endian::little);
 }
 
-std::uint32_t check_sum(std::string_view bytes) {
+/// Of bytes after those of the sum `before`.
+std::uint32_t check_sum(std::string_view bytes, std::uint32_t before = 0) {
   static const std::array<std::uint32_t, 256> table = [] {
     std::array<std::uint32_t, 256> values{};
     for (std::uint32_t i = 0; i < 256; ++i) {
@@ -37,7 +39,7 @@ std::uint32_t check_sum(std::string_view bytes) {
     }
     return values;
   }();
-  std::uint32_t sum = max_32;
+  std::uint32_t sum = ~before;
   for (const char c : bytes) sum = sum >> 8 ^ table[(sum ^ static_cast<unsigned char>(c)) & 0xff];
   return ~sum;
 }
@@ -73,25 +75,57 @@ bool inflate_all(std::string_view packed, std::size_t size, std::string& bytes) 
   return status == Z_STREAM_END && bytes.size() == size;
 }
 
-/// Empty where it would not be shorter.
-std::string deflate_all(std::string_view bytes) {
-  z_stream stream{};
-  if (bytes.empty() || bytes.size() > max_32 / 2 ||
-      deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
-    return {};
-  }
-  std::string packed(bytes.size(), '\0');
-  stream.next_in =
-      reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // NOLINT: zlib only reads there
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const int status = deflate(&stream, Z_FINISH);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  return status == Z_STREAM_END ? packed : std::string();
-}
 #endif
+
+/// Appends what it is given to a text; deflated where there is zlib.
+class Packer {
+ public:
+  explicit Packer(std::string& to) : to_(to) {
+#if SNUG_HAS_ZLIB
+    if (deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw std::bad_alloc();
+#endif
+  }
+  Packer(const Packer&) = delete;
+  Packer& operator=(const Packer&) = delete;
+
+#if SNUG_HAS_ZLIB
+  static constexpr std::uint16_t method = deflated;
+  ~Packer() { deflateEnd(&stream_); }
+
+  void append(std::string_view bytes) {
+    constexpr std::size_t step = std::size_t{1} << 20;
+    for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), step)))
+      run(bytes.substr(0, step), Z_NO_FLUSH);
+  }
+  void finish() { run({}, Z_FINISH); }
+
+ private:
+  void run(std::string_view bytes, int flush) {
+    std::array<char, 1 << 14> packed;
+    stream_.next_in =
+        reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // NOLINT: zlib only reads there
+    stream_.avail_in = static_cast<uInt>(bytes.size());
+    do {
+      stream_.next_out = reinterpret_cast<Bytef*>(packed.data());
+      stream_.avail_out = static_cast<uInt>(packed.size());
+      deflate(&stream_, flush);
+      to_.append(packed.data(), packed.size() - stream_.avail_out);
+    } while (stream_.avail_out == 0);
+  }
+
+  z_stream stream_{};
+#else
+  static constexpr std::uint16_t method = stored;
+  ~Packer() = default;
+
+  void append(std::string_view bytes) { to_.append(bytes); }
+  void finish() {}
+
+ private:
+#endif
+  std::string& to_;
+};
 
 }  // namespace
 
@@ -206,24 +240,32 @@ std::string ZipArchive::read(const std::string& path) {
 }
 
 void ZipWriter::add(const std::string& path, std::string_view bytes) {
-  std::string packed;
-#if SNUG_HAS_ZLIB
-  packed = deflate_all(bytes);
-#endif
-  const std::uint16_t method = packed.empty() ? stored : deflated;
-  const std::string_view content = packed.empty() ? bytes : std::string_view(packed);
-  fits_ = fits_ && bytes_.size() + content.size() + (std::size_t{1} << 20) < max_32 && bytes.size() < max_32;
-  if (!fits_) return;
+  add(path, [&](const Append& append) { append(bytes); });
+}
+
+void ZipWriter::add(const std::string& path, const std::function<void(const Append&)>& fill) {
+  const std::size_t begin = bytes_.size(), content = begin + local_size + path.size();
+  bytes_.append(local_size, '\0').append(path);
+  std::uint32_t check = 0;
+  std::size_t size = 0;
+  Packer packer(bytes_);
+  fill([&](std::string_view bytes) {
+    check = check_sum(bytes, check);
+    size += bytes.size();
+    fits_ = fits_ && bytes_.size() + (std::size_t{1} << 20) < max_32 && size < max_32;
+    if (fits_) packer.append(bytes);
+  });
+  packer.finish();
   // The same date for the same bytes: 1 January 1980.
   const auto append_common = [&](std::string& to) {
     append_binary(to, std::uint16_t{20});     // version needed
     append_binary(to, std::uint16_t{0x800});  // names are UTF-8
-    append_binary(to, method);
+    append_binary(to, Packer::method);
     append_binary(to, std::uint16_t{0});
     append_binary(to, std::uint16_t{0x21});
-    append_binary(to, check_sum(bytes));
-    append_binary(to, static_cast<std::uint32_t>(content.size()));
-    append_binary(to, static_cast<std::uint32_t>(bytes.size()));
+    append_binary(to, check);
+    append_binary(to, static_cast<std::uint32_t>(bytes_.size() - content));
+    append_binary(to, static_cast<std::uint32_t>(size));
     append_binary(to, static_cast<std::uint16_t>(path.size()));
     append_binary(to, std::uint16_t{0});
   };
@@ -231,12 +273,12 @@ void ZipWriter::add(const std::string& path, std::string_view bytes) {
   append_binary(directory_, std::uint16_t{20});
   append_common(directory_);
   directory_.append(10, '\0');  // no comment, first disk, no attributes
-  append_binary(directory_, static_cast<std::uint32_t>(bytes_.size()));
+  append_binary(directory_, static_cast<std::uint32_t>(begin));
   directory_ += path;
-  append_binary(bytes_, local_mark);
-  append_common(bytes_);
-  bytes_ += path;
-  bytes_ += content;
+  std::string head;
+  append_binary(head, local_mark);
+  append_common(head);
+  bytes_.replace(begin, local_size, head);
   ++count_;
 }
 

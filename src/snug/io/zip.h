@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -43,7 +44,11 @@ class ZipArchive {
 /// Files on their way into an archive; deflated where snug was built with zlib.
 class ZipWriter {
  public:
+  using Append = std::function<void(std::string_view)>;
+
   void add(const std::string& path, std::string_view bytes);
+  /// A file whose bytes fill(append) makes part by part; how they are cut makes no difference to the archive.
+  void add(const std::string& path, const std::function<void(const Append&)>& fill);
   /// The archive.
   /// Errors:    InputError (refused) beyond 4 GiB.
   [[nodiscard]] std::string finish(const std::string& name);
