@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <numeric>
 #include <vector>
 
 namespace snug::piece_fit_test {
@@ -31,11 +32,29 @@ std::vector<Patch> patches_of(const LimitSurface& surface) {
   return patches;
 }
 
+using Fits = std::vector<PieceFit> (*)(BoundsCache& library, std::span<const Patch> patches);
 std::vector<PieceFit> fits_of(BoundsCache& library, std::span<const Patch> patches) {
   std::vector<PieceFit> fits(patches.size());
   fit_pieces(library, patches, fits);
   return fits;
 }
+// By kind; the answers in the order of the patches.
+std::vector<PieceFit> sorted_fits_of(BoundsCache& library, std::span<const Patch> patches) {
+  std::vector<std::size_t> order(patches.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return patches[a].kind->id() < patches[b].kind->id();
+  });
+  std::vector<Patch> sorted;
+  for (const std::size_t i : order) sorted.push_back(patches[i]);
+  std::vector<PieceFit> fits(patches.size()), result(patches.size());
+  fit_sorted_pieces(library, sorted, fits);
+  for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = fits[i];
+  return result;
+}
+class BothWays : public ::testing::TestWithParam<Fits> {};
+INSTANTIATE_TEST_SUITE_P(piece_fit, BothWays, ::testing::Values(fits_of, sorted_fits_of),
+                         [](const auto& of) { return of.param == &fits_of ? "as_they_are" : "sorted"; });
 
 // All numbers of an answer; of none the sign of its radius.
 std::vector<double> numbers(const PieceFit& fit) {
@@ -58,32 +77,32 @@ bool same(const PieceFit& a, const PieceFit& b) {
   return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
 }
 
-TEST(piece_fit, of_a_patch_does_not_depend_on_the_others) {
+TEST_P(BothWays, of_a_patch_does_not_depend_on_the_others) {
   std::mt19937_64 random(51);
   testing::for_each_surface(51, [&](const testing::NamedSurface& named) {
     std::vector<Patch> patches = patches_of(named.surface);
-    const std::vector<PieceFit> together = fits_of(named.surface.library(), patches);
+    const std::vector<PieceFit> together = GetParam()(named.surface.library(), patches);
     for (std::size_t i = 0; i < patches.size(); ++i) {
-      ASSERT_TRUE(same(fits_of(named.surface.library(), {&patches[i], 1})[0], together[i])) << named.name;
+      ASSERT_TRUE(same(GetParam()(named.surface.library(), {&patches[i], 1})[0], together[i])) << named.name;
     }
     std::vector<std::size_t> order(patches.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::shuffle(order.begin(), order.end(), random);
     std::vector<Patch> shuffled;
     for (const std::size_t i : order) shuffled.push_back(patches[i]);
-    const std::vector<PieceFit> others = fits_of(named.surface.library(), shuffled);
+    const std::vector<PieceFit> others = GetParam()(named.surface.library(), shuffled);
     for (std::size_t i = 0; i < order.size(); ++i)
       ASSERT_TRUE(same(others[i], together[order[i]])) << named.name;
   });
 }
 
-TEST(piece_fit, is_the_same_on_every_instruction_set) {
+TEST_P(BothWays, is_the_same_on_every_instruction_set) {
   const testing::EachInstructionSet sets;
   testing::for_each_surface(52, [&](const testing::NamedSurface& named) {
     const std::vector<Patch> patches = patches_of(named.surface);
     std::vector<PieceFit> first;
     sets.run([&](const char* name) {
-      const std::vector<PieceFit> fits = fits_of(named.surface.library(), patches);
+      const std::vector<PieceFit> fits = GetParam()(named.surface.library(), patches);
       if (first.empty()) first = fits;
       for (std::size_t i = 0; i < fits.size(); ++i) {
         ASSERT_TRUE(same(fits[i], first[i])) << named.name << ", " << name;
@@ -106,12 +125,12 @@ Alone alone(BoundsCache& library, const Patch& patch) {
   return result;
 }
 
-TEST(piece_fit, is_as_narrow_as_the_fit_of_one_patch) {
+TEST_P(BothWays, is_as_narrow_as_the_fit_of_one_patch) {
   double errors = 0, errors_alone = 0, radii = 0, radii_alone = 0;
   std::size_t answers = 0, patches_asked = 0;
   testing::for_each_surface(53, [&](const testing::NamedSurface& named) {
     const std::vector<Patch> patches = patches_of(named.surface);
-    const std::vector<PieceFit> fits = fits_of(named.surface.library(), patches);
+    const std::vector<PieceFit> fits = GetParam()(named.surface.library(), patches);
     patches_asked += patches.size();
     for (std::size_t i = 0; i < patches.size(); ++i) {
       const PieceFit& fit = fits[i];
@@ -135,12 +154,12 @@ TEST(piece_fit, is_as_narrow_as_the_fit_of_one_patch) {
 }
 
 // dot(axis, x) in extended precision, for limit points x.
-TEST(piece_fit, reaches_as_far_along_its_axes_as_it_says) {
+TEST_P(BothWays, reaches_as_far_along_its_axes_as_it_says) {
   std::mt19937_64 random(54);
   std::size_t samples = 0, near = 0;
   const auto expect_inside = [&](const std::string& name, const LimitSurface& surface) {
     const std::vector<Patch> patches = patches_of(surface);
-    const std::vector<PieceFit> fits = fits_of(surface.library(), patches);
+    const std::vector<PieceFit> fits = GetParam()(surface.library(), patches);
     for (std::size_t i = 0; i < patches.size(); ++i) {
       if (fits[i].offset.radius < 0) continue;
       for (int sample = 0; sample < 6; ++sample) {
@@ -206,7 +225,7 @@ TEST(piece_fit, has_no_direction_across_corners_on_a_line) {
   }
 }
 
-TEST(piece_fit, has_no_answer_for_what_has_no_triangle) {
+TEST_P(BothWays, has_no_answer_for_what_has_no_triangle) {
   const auto library = std::make_shared<BoundsCache>();
   ControlMesh mesh;
   const oracle::TaggedMesh cube = oracle::meshes::triangulated(oracle::meshes::cube());
@@ -217,7 +236,7 @@ TEST(piece_fit, has_no_answer_for_what_has_no_triangle) {
   for (Vector3& p : patches[1].points) p = {};
   patches[2].points[1].y = INFINITY;
   patches[3].points[2].z = std::nan("");
-  const std::vector<PieceFit> fits = fits_of(*library, patches);
+  const std::vector<PieceFit> fits = GetParam()(*library, patches);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT(fits[i].offset.radius, 0) << i;
   for (std::size_t i = 4; i < fits.size(); ++i) EXPECT_GT(fits[i].offset.radius, 0) << i;
 }

@@ -103,7 +103,7 @@ TYPED_TEST(fit_rows, holds_the_limit_patch) {
   std::size_t answered = 0, asked = 0;
   for (const Kind* kind : kinds(library)) {
     const Batch b = batch(*kind, 21, random);
-    const kernels::RowsWithTips<TypeParam> rows(library, *kind);
+    const kernels::RowsWithTips<TypeParam> rows(library, *kind, kernels::TipsBy::tables);
     for (const unsigned levels : {3u, 4u, 6u}) {
       const auto fits = b.fits(rows, 0, 21, levels);
       for (const OffsetTriangle& fit : fits) answered += fit.radius >= 0;
@@ -127,7 +127,8 @@ TYPED_TEST(fit_rows, holds_patches_of_all_schemes) {
           !seen.insert(&kind).second)
         return;
       const Batch b = batch(kind, 5, random);
-      const auto fits = b.fits(kernels::RowsWithTips<TypeParam>(named.surface.library(), kind), 0, 5);
+      const auto fits = b.fits(
+          kernels::RowsWithTips<TypeParam>(named.surface.library(), kind, kernels::TipsBy::tables), 0, 5);
       expect_limits_inside(kind, b, fits);
       for (const OffsetTriangle& fit : fits) answered += fit.radius >= 0;
     });
@@ -139,7 +140,7 @@ TYPED_TEST(fit_rows, does_not_depend_on_the_patches_beside_it) {
   std::mt19937_64 random(84);
   BoundsCache library;
   const Kind& kind = *kinds(library)[3];
-  const kernels::RowsWithTips<TypeParam> rows(library, kind);
+  const kernels::RowsWithTips<TypeParam> rows(library, kind, kernels::TipsBy::tables);
   Batch b = batch(kind, 19, random);
   b.points[7].x = NAN;
   const auto together = b.fits(rows, 0, 19);
@@ -161,7 +162,7 @@ TYPED_TEST(fit_rows, marks_what_is_not_finite) {
   BoundsCache library;
   for (const Kind* kind : kinds(library)) {
     const std::size_t n = kind->control_count();
-    const kernels::RowsWithTips<TypeParam> rows(library, *kind);
+    const kernels::RowsWithTips<TypeParam> rows(library, *kind, kernels::TipsBy::tables);
     Batch b = batch(*kind, n, random);
     for (std::size_t i = 0; i < n; ++i) b.points[i * n + i].y = i % 2 ? NAN : INFINITY;
     for (const OffsetTriangle& fit : b.fits(rows, 0, n)) EXPECT_LT(fit.radius, 0);
@@ -175,7 +176,8 @@ TYPED_TEST(fit_rows, has_the_same_bits_on_every_instruction_set) {
     std::vector<std::uint64_t> bits;
     for (const Kind* kind : kinds(library)) {
       const Batch b = batch(*kind, 13, random);
-      for (const OffsetTriangle& fit : b.fits(kernels::RowsWithTips<TypeParam>(library, *kind), 0, 13)) {
+      for (const OffsetTriangle& fit :
+           b.fits(kernels::RowsWithTips<TypeParam>(library, *kind, kernels::TipsBy::tables), 0, 13)) {
         bits.push_back(std::bit_cast<std::uint64_t>(fit.radius));
         if (fit.radius < 0) continue;
         for (const Point3& p : fit.base) {
@@ -198,8 +200,8 @@ TEST(fit_rows_in_single_precision, is_as_near_as_is_said_and_not_below_doubles) 
   double most = 1;
   for (const Kind* kind : kinds(library)) {
     const Batch b = batch(*kind, 101, random);
-    const auto single = b.fits(kernels::RowsWithTips<float>(library, *kind), 0, 101),
-               twice = b.fits(kernels::RowsWithTips<double>(library, *kind), 0, 101);
+    const auto single = b.fits(kernels::RowsWithTips<float>(library, *kind, kernels::TipsBy::tables), 0, 101),
+               twice = b.fits(kernels::RowsWithTips<double>(library, *kind, kernels::TipsBy::tables), 0, 101);
     for (std::size_t i = 0; i < 101; ++i) {
       exact += single[i].radius == kernels::needs_digits;
       if (single[i].radius < 0 || twice[i].radius < 0) continue;

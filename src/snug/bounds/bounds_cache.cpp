@@ -39,4 +39,15 @@ const QuadraticRows& BoundsCache::quadratic_rows(const Kind& kind) {
   return quadratics_.get(kind.id(), [&] { return make_quadratic_rows(*this, kind); });
 }
 
+const kernels::RowsWithTips<float>* BoundsCache::piece_rows(const Kind& kind) {
+  const PieceRows& made = piece_rows_.get(kind.id(), [&] {
+    PieceRows result;
+    if (kernels::has_rows_with_tips(*this, kind) && kernels::has_layouts(*this, kind)) {
+      result.rows.emplace(*this, kind, kernels::TipsBy::layouts);
+    }
+    return result;
+  });
+  return made.rows ? &*made.rows : nullptr;
+}
+
 }  // namespace snug

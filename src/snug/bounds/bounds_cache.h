@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include <snug/bounds/bound_table.h>
 #include <snug/bounds/bounding_rows.h>
 #include <snug/bounds/crease_rows.h>
 #include <snug/bounds/kind_slots.h>
 #include <snug/bounds/quadratic.h>
+#include <snug/bounds/rows_kernel.h>
 #include <snug/bounds/tip_table.h>
 
 namespace snug {
@@ -28,7 +30,8 @@ class BoundsCache {
         level_steps_(max_bytes_of_rows),
         direct_rows_(max_bytes_of_rows),
         tip_tables_(max_bytes_of_rows),
-        quadratics_(max_bytes_of_rows) {}
+        quadratics_(max_bytes_of_rows),
+        piece_rows_(max_bytes_of_rows) {}
 
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
@@ -49,15 +52,22 @@ class BoundsCache {
   [[nodiscard]] const TipTable& tip_table(const Kind& kind);
   /// Rows for the quadratic triangles of a kind.
   [[nodiscard]] const QuadraticRows& quadratic_rows(const Kind& kind);
+  /// What fits pieces of a kind without a split. Null for others than has_layouts().
+  [[nodiscard]] const kernels::RowsWithTips<float>* piece_rows(const Kind& kind);
 
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const {
     return rows_.bytes() + direct_rows_.bytes() + level_rows_.bytes() + level_steps_.bytes() +
-           tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes();
+           tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes() + piece_rows_.bytes();
   }
 
  private:
+  struct PieceRows {
+    std::optional<kernels::RowsWithTips<float>> rows;
+    [[nodiscard]] std::size_t bytes() const { return rows ? rows->bytes() : 0; }
+  };
+
   KindCache kinds_;
   KindSlots<BoundingRows> rows_, level_rows_;
   KindSlots<LevelStep> level_steps_;
@@ -65,6 +75,7 @@ class BoundsCache {
   KindSlots<BoundTable> tables_;
   KindSlots<TipTable> tip_tables_;
   KindSlots<QuadraticRows> quadratics_;
+  KindSlots<PieceRows> piece_rows_;
 };
 
 }  // namespace snug

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <snug/geometry.h>
+#include <snug/geometry/rounding.h>
 #include <snug/mesh.h>
 #include <snug/scheme/stencils.h>
 
@@ -46,6 +47,17 @@ HWY_INLINE Vec3<V> zero3(D d) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void add_scaled(D d, hn::TFromD<D> weight, const Vec3<V>& p, Vec3<V>& sum) {
   sum = add(sum, scaled(hn::Set(d, weight), p));
+}
+
+/// A number in all lanes, rounded to nearest.
+template <class D>
+HWY_INLINE hn::Vec<D> number(D d, double x) {
+  return hn::Set(d, static_cast<hn::TFromD<D>>(x));
+}
+/// Above, whatever its rounding: of bounds that are not near the ends of the range.
+template <class D>
+HWY_INLINE hn::Vec<D> above(D d, double x) {
+  return number(d, x * (1 + 8 * roundoff_of<hn::TFromD<D>>));
 }
 
 /// A row times points, of which source i is number name(i).

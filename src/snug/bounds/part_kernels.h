@@ -60,6 +60,7 @@ struct PartBounds {
   };
   Reach points, tip;
   double error, size;  ///< what coordinates of points are off by, and what none of them exceeds
+  double doubt = 0;    ///< how much of the distance from the base may be rounding, beside what `error` says
 };
 
 /// Where a tip ended, in its patch's frame: its net, the quadratic over it, and what coordinates of the net are off by.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include <snug/bounds/part_kernels.h>
+#include <snug/bounds/piece_kernel.h>
 #include <snug/geometry/rounding.h>
 
 namespace snug {
@@ -119,7 +121,7 @@ PieceFit answer(const Patch& patch, const PatchFrame& frame, const PartShape* co
   const double far = generous * all.points.base;
   const double measuring = unit_roundoff * (8 + 48 * frame.amplify) * (far + 2 * frame.longest);
   const double rounding = frame.deviation + frame.stretch * std::fabs(frame.middle) + measuring;
-  fit.offset.rounding = enlarged(generous * (rounding + given));
+  fit.offset.rounding = enlarged(generous * (rounding + given + all.doubt));
   const double radius = enlarged(generous * ((far + rounding) * (1 + frame.stretch) + given));
 
   std::array<Vector3, 6> quadratic = frame.quadratic[0];
@@ -217,24 +219,90 @@ void Group::fit(BoundsCache& library, std::span<PieceFit> out) {
   }
 }
 
-}  // namespace
-
-void fit_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out) {
-  thread_local Group whole, split;
-  whole.begin(1);
-  split.begin(4);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Patch& patch = patches[i];
+// As polynomials, or split.
+class Parts {
+ public:
+  void begin() {
+    whole_.begin(1);
+    split_.begin(4);
+  }
+  void add(const Patch& patch, std::size_t i, std::span<PieceFit> out) {
     if (patch.kind->polynomial()) {
-      whole.add(patch, i);
+      whole_.add(patch, i);
     } else if (patch.kind->cacheable() && patch.path.level() < PiecePath::max_level) {
-      split.add(patch, i);
+      split_.add(patch, i);
     } else {
       out[i].offset.radius = -1;
     }
   }
-  whole.fit(library, out);
-  split.fit(library, out);
+  void fit(BoundsCache& library, std::span<PieceFit> out) {
+    whole_.fit(library, out);
+    split_.fit(library, out);
+  }
+
+ private:
+  Group whole_, split_;
+};
+
+// Patches of one kind without a split. Leaves those without an answer in `which`.
+class ByRows {
+ public:
+  void fit(const kernels::RowsWithTips<float>& rows, std::span<const Patch> patches,
+           std::vector<std::size_t>& which, std::span<PieceFit> out) {
+    const std::size_t count = which.size();
+    shapes_.resize(count);
+    frames_.resize(count);
+    bounds_.resize(count);
+    pieces_.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      pieces_.push_back({&patches[which[i]], &shapes_[i], &frames_[i], &bounds_[i]});
+    // Of fewer levels most tips stick out, and a second pass costs more than the last levels.
+    kernels::fit_pieces_by_rows(rows, kernels::most_row_levels, pieces_);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      PieceFit& fit = out[which[i]];
+      fit.offset.radius = -1;
+      if (bounds_[i].error >= 0) {
+        const PartShape* const shape = &shapes_[i];
+        fit = answer(patches[which[i]], frames_[i], std::array{shape, shape, shape}.data(), {&bounds_[i], 1});
+      }
+      if (!(fit.offset.radius >= 0)) which[left++] = which[i];
+    }
+    which.resize(left);
+  }
+
+ private:
+  std::vector<PartShape> shapes_;
+  std::vector<PatchFrame> frames_;
+  std::vector<PartBounds> bounds_;
+  std::vector<kernels::PieceToFit> pieces_;
+};
+
+}  // namespace
+
+void fit_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out) {
+  thread_local Parts parts;
+  parts.begin();
+  for (std::size_t i = 0; i < patches.size(); ++i) parts.add(patches[i], i, out);
+  parts.fit(library, out);
+}
+
+void fit_sorted_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out) {
+  thread_local ByRows by_rows;
+  thread_local std::vector<std::size_t> which;
+  thread_local Parts parts;
+  parts.begin();
+  for (std::size_t begin = 0, end = 0; begin < patches.size(); begin = end) {
+    const Kind& kind = *patches[begin].kind;
+    while (end < patches.size() && patches[end].kind == &kind) ++end;
+    which.resize(end - begin);
+    std::iota(which.begin(), which.end(), begin);
+    const kernels::RowsWithTips<float>* const rows =
+        kind.cacheable() && !kind.polynomial() ? library.piece_rows(kind) : nullptr;
+    if (rows) by_rows.fit(*rows, patches, which, out);
+    for (const std::size_t i : which) parts.add(patches[i], i, out);
+  }
+  parts.fit(library, out);
 }
 
 }  // namespace snug

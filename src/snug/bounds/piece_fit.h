@@ -30,4 +30,9 @@ struct PieceFit {
 /// Source:    derivations/quadratics.md, "Many patches at once".
 void fit_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out);
 
+/// The same sooner for patches of which those of one kind follow each other and are many: these are bounded as they are, without a
+/// split, in single precision where its roundings are a small part of the bounds.
+/// Source:    derivations/quadratics.md, "Many patches of one kind".
+void fit_sorted_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out);
+
 }  // namespace snug

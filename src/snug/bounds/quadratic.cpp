@@ -172,6 +172,39 @@ bool is_common(const Kind& kind, unsigned levels) {
 
 }  // namespace
 
+std::vector<double> quadratic_fit(BoundsCache& library, const Kind& kind) {
+  if (kind.polynomial() || kind.transient() || !has_quadratic_rows(kind)) return {};
+  if (comes_again(kind)) {
+    const double* const own = library.quadratic_rows(kind).fit();
+    return {own, own + 6 * kind.control_count()};
+  }
+  const std::vector<KindChild>& children = kind.children();
+  if (!std::all_of(children.begin(), children.end(),
+                   [](const KindChild& c) { return is_common(*c.kind, 1); })) {
+    return {};
+  }
+  std::vector<double> fit(6 * kind.control_count(), 0.0);
+  for (std::size_t child = 0; child < children.size(); ++child) {
+    const auto& [of, first, step, control] = children[child];
+    const double* const own = library.quadratic_rows(*of).fit();
+    const Restriction& back = quarter_rows().from_child[child];
+    for (std::size_t i = 0; i < control.size(); ++i) {
+      std::array<double, 6> weights{};  // of this control point in the whole
+      for (std::size_t k = 0; k < 6; ++k) {
+        // Corner k of the child's kind is corner k + first of the child.
+        const std::size_t to = k < 3 ? (k + first) % 3 : 3 + (k + first) % 3;
+        for (std::size_t q = 0; q < 6; ++q) weights[q] += back[q][to] * own[6 * i + k];
+      }
+      const Stencils::Row row = step->row(control[i]);
+      for (std::size_t s = 0; s < row.sources.size(); ++s) {
+        double* const column = fit.data() + std::size_t{6} * row.sources[s];
+        for (std::size_t q = 0; q < 6; ++q) column[q] += row.weights[s] * weights[q];
+      }
+    }
+  }
+  return fit;
+}
+
 std::size_t QuadraticRows::bytes() const {
   return (to_nets_.size() + to_level_nets_.size()) * sizeof(Restriction) +
          (fit_.size() + largest_.size()) * sizeof(double) +
@@ -206,36 +239,6 @@ void QuadraticRows::make_fit(const BoundingRows& deep) {
     solve(gram, column);
     fit_.insert(fit_.end(), column.begin(), column.end());
   }
-}
-
-// The quadratic nearest to those of the children, which are of kinds that many patches have, so that it costs little. False where
-// these would need rows of their own parts.
-bool QuadraticRows::make_fit_of_children(BoundsCache& library, const Kind& kind) {
-  const std::vector<KindChild>& children = kind.children();
-  if (!std::all_of(children.begin(), children.end(),
-                   [](const KindChild& c) { return is_common(*c.kind, 1); })) {
-    return false;
-  }
-  fit_.assign(6 * kind.control_count(), 0.0);
-  for (std::size_t child = 0; child < children.size(); ++child) {
-    const auto& [of, first, step, control] = children[child];
-    const double* const own = library.quadratic_rows(*of).fit();
-    const Restriction& back = quarter_rows().from_child[child];
-    for (std::size_t i = 0; i < control.size(); ++i) {
-      std::array<double, 6> weights{};  // of this control point in the whole
-      for (std::size_t k = 0; k < 6; ++k) {
-        // Corner k of the child's kind is corner k + first of the child.
-        const std::size_t to = k < 3 ? (k + first) % 3 : 3 + (k + first) % 3;
-        for (std::size_t q = 0; q < 6; ++q) weights[q] += back[q][to] * own[6 * i + k];
-      }
-      const Stencils::Row row = step->row(control[i]);
-      for (std::size_t s = 0; s < row.sources.size(); ++s) {
-        double* const column = fit_.data() + std::size_t{6} * row.sources[s];
-        for (std::size_t q = 0; q < 6; ++q) column[q] += row.weights[s] * weights[q];
-      }
-    }
-  }
-  return true;
 }
 
 void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
@@ -447,7 +450,8 @@ QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind) {
   for (const BoundingRows::Net& net : library.level_rows(kind).nets()) {
     result.to_level_nets_.push_back(restriction_to(net.place));
   }
-  if (!comes_again(kind) && result.make_fit_of_children(library, kind)) return result;
+  if (!comes_again(kind)) result.fit_ = quadratic_fit(library, kind);
+  if (!result.fit_.empty()) return result;
   const BoundingRows deep = make_bounding_rows(kind, frame_levels);
   result.make_fit(deep);
   result.make_frame(kind, deep);

@@ -63,7 +63,6 @@ class QuadraticRows {
  private:
   friend QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
   void make_fit(const BoundingRows& deep);
-  [[nodiscard]] bool make_fit_of_children(BoundsCache& library, const Kind& kind);
   void make_frame(const Kind& kind, const BoundingRows& deep);
   void make_lattice(BoundsCache& library, const Kind& kind);
   [[nodiscard]] Apart distance_on_lattice(const Patch& patch, const std::array<Vector3, 6>& q,
@@ -89,6 +88,10 @@ struct QuarterRows {
   std::array<QuadraticRows::Restriction, 4> from_child;
 };
 [[nodiscard]] const QuarterRows& quarter_rows();
+
+/// The fit of a kind that comes again, or of one whose children are polynomials, come again, or are made of such: the quadratic
+/// nearest to theirs, which are of kinds that many patches have, so that it costs little. Empty for others.
+[[nodiscard]] std::vector<double> quadratic_fit(BoundsCache& library, const Kind& kind);
 
 /// Of a transient kind the lattice alone, and no fit.
 /// Requires:  a patch, no polygon, with has_quadratic_rows().

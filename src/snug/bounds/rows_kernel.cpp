@@ -4,6 +4,7 @@
 // After it.
 #include <snug/bounds/lanes-inl.h>
 #include <snug/bounds/planar_triangle-inl.h>
+#include <snug/bounds/rows_lanes-inl.h>
 #include <snug/bounds/table_boxes-inl.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include <snug/bounds/bounds_cache.h>
 #include <snug/bounds/rows_kernel.h>
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
@@ -25,68 +27,11 @@ namespace {
 // How much tips may add to the radius of the rest, and to its height.
 constexpr double max_excess = 0.15;
 
-// each(r, product) for the rows, of `points`; two at once.
-template <class D, class Each, class V = hn::Vec<D>, class T = hn::TFromD<D>>
-HWY_INLINE void each_product(D d, const SparseRows<T>& rows, const LanesOf<T>& points, const Each& each) {
-  const std::uint32_t* place = rows.places.data();
-  const std::uint32_t* source = rows.sources.data();
-  const T* weight = rows.weights.data();
-  const std::size_t stride = hn::Lanes(d);
-  const auto point = [&](std::uint32_t i) HWY_ATTR {
-    const T* const at = points.first + 3 * stride * i;
-    return Vec3<V>{hn::Load(d, at), hn::Load(d, at + stride), hn::Load(d, at + 2 * stride)};
-  };
-  for (const auto& [count, length] : rows.runs) {
-    std::size_t r = 0;
-    for (; r + 2 <= count; r += 2) {
-      Vec3<V> one = scaled(hn::Set(d, weight[0]), point(source[0])),
-              two = scaled(hn::Set(d, weight[length]), point(source[length]));
-      for (std::size_t i = 1; i < length; ++i) {
-        add_scaled(d, weight[i], point(source[i]), one);
-        add_scaled(d, weight[length + i], point(source[length + i]), two);
-      }
-      each(place[0], one);
-      each(place[1], two);
-      place += 2;
-      weight += 2 * length;
-      source += 2 * length;
-    }
-    if (r == count) continue;
-    Vec3<V> sum = scaled(hn::Set(d, weight[0]), point(source[0]));
-    for (std::size_t i = 1; i < length; ++i) add_scaled(d, weight[i], point(source[i]), sum);
-    each(*place++, sum);
-    weight += length;
-    source += length;
-  }
-}
-
-// Vectors of doubles that hold as many numbers as one of D: one, or two.
-template <class D>
-constexpr std::size_t most_parts = sizeof(double) / sizeof(hn::TFromD<D>);
-
 // Boxes of a tip in the frame, [axis][corner of the table], with all errors, and what these are by axes.
 template <class V>
 struct TipBoxes {
   V middle[3][3], half[3][3], error[3];
 };
-
-// A control net among the points of a step.
-template <class T>
-struct NetLanes {
-  LanesOf<T> points;
-  std::span<const std::uint32_t> control;
-  [[nodiscard]] const T* at(std::size_t i, std::size_t axis) const { return points.at(control[i], axis); }
-};
-
-template <class D>
-HWY_INLINE hn::Vec<D> number(D d, double x) {
-  return hn::Set(d, static_cast<hn::TFromD<D>>(x));
-}
-// Above, whatever its rounding: of bounds that are not near the ends of the range.
-template <class D>
-HWY_INLINE hn::Vec<D> above(D d, double x) {
-  return number(d, x * (1 + 8 * roundoff_of<hn::TFromD<D>>));
-}
 
 // `net_error`: of its points, by axes.
 template <class D, class V = hn::Vec<D>, class T = hn::TFromD<D>>
@@ -132,38 +77,6 @@ HWY_INLINE V farthest_of(D d, const PlanarTriangle<V>& t, const TipBoxes<V>& box
   return farthest;
 }
 
-// Control points relative to the first, then in the frame, as numbers of `to`. The largest |coordinate| relative to the
-// first corner; not a number where a point is not finite.
-template <class D, class T, class V = hn::Vec<D>>
-HWY_INLINE V into_frame(D d, const PlanarTriangle<V>& t, const Lanes& control, std::size_t count,
-                        const LanesOf<T>& to) {
-  V largest = hn::Zero(d), probe = hn::Zero(d);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec3<V> r = sub(load(d, control, k), t.a);
-    largest = hn::Max(largest, max3(hn::Abs(r.x), hn::Abs(r.y), hn::Abs(r.z)));
-    probe = hn::Add(probe, hn::Add(hn::Sub(r.x, r.x), hn::Add(hn::Sub(r.y, r.y), hn::Sub(r.z, r.z))));
-    store_as(d, dot(t.t1, r), to.at(k, 0));
-    store_as(d, dot(t.t2, r), to.at(k, 1));
-    store_as(d, dot(t.n, r), to.at(k, 2));
-  }
-  return hn::Add(largest, probe);
-}
-
-// Points of patches as they come to be, level by level.
-template <class T>
-struct Memory {
-  LanesOf<T> control, patch, tip[2], middle, bezier;
-  Memory(T* at, std::size_t lanes, const RowsWithTips<T>& rows) {
-    for (LanesOf<T>* const part : {&control, &patch, &tip[0], &tip[1], &middle, &bezier}) {
-      *part = {at, lanes};
-      at += 3 * lanes * (part == &control ? rows.kind().control_count() : rows.most_points());
-    }
-  }
-  [[nodiscard]] static std::size_t size(const RowsWithTips<T>& rows, unsigned levels) {
-    return 3 * (rows.kind().control_count() + 4 * rows.most_points() + rows.bezier_count(levels));
-  }
-};
-
 // Patches in doubles, before they are bounded: relative to their first control points.
 template <class V>
 struct PlacedV {
@@ -183,7 +96,8 @@ struct BoundedV {
 
 template <class D, class V = hn::Vec<D>, class T = hn::TFromD<D>>
 HWY_INLINE BoundedV<V, hn::Mask<D>> bound(D d, const RowsWithTips<T>& rows, unsigned levels,
-                                          const Memory<T>& memory, const PlanarTriangle<V>& t, V largest) {
+                                          const RowsMemory<T>& memory, const PlanarTriangle<V>& t,
+                                          V largest) {
   const LanesOf<T>& control = memory.control;
   const V zero = hn::Zero(d), infinite = number(d, INFINITY);
   V point_error[3];
@@ -306,8 +220,8 @@ HWY_INLINE void finish(D d, PlacedV<V>& placed, const BoundedV<V, hn::Mask<D>>& 
 // `control`: room for the control points of a vector of doubles.
 template <class B, class T = hn::TFromD<B>>
 HWY_INLINE void fit_lanes(B of_bounds, const RowsWithTips<T>& rows, unsigned levels,
-                          std::span<const Point3> points, const VertexId* control, const Memory<T>& memory,
-                          double* gathered, std::span<OffsetTriangle> out) {
+                          std::span<const Point3> points, const VertexId* control,
+                          const RowsMemory<T>& memory, double* gathered, std::span<OffsetTriangle> out) {
   const hn::ScalableTag<double> d;
   using V = hn::Vec<decltype(d)>;
   const std::size_t some = hn::Lanes(d), all = hn::Lanes(of_bounds), count = rows.kind().control_count();
@@ -355,7 +269,7 @@ HWY_INLINE void fit_all(const RowsWithTips<T>& rows, unsigned levels, std::span<
                         const VertexId* control, std::span<OffsetTriangle> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(hn::ScalableTag<T>()), count = rows.kind().control_count();
-  const std::size_t memory_size = lanes * Memory<T>::size(rows, levels);
+  const std::size_t memory_size = lanes * RowsMemory<T>::size(rows, levels);
   // Of doubles together.
   double* const gathered =
       aligned_memory(3 * count * hn::Lanes(d) + (sizeof(T) == sizeof(double) ? memory_size : 0));
@@ -368,7 +282,7 @@ HWY_INLINE void fit_all(const RowsWithTips<T>& rows, unsigned levels, std::span<
   const auto fit = [&](auto of_bounds, std::size_t begin) HWY_ATTR {
     const std::size_t here = std::min(hn::Lanes(of_bounds), out.size() - begin);
     fit_lanes(of_bounds, rows, levels, points, control + count * begin,
-              Memory<T>(at, hn::Lanes(of_bounds), rows), gathered, out.subspan(begin, here));
+              RowsMemory<T>(at, hn::Lanes(of_bounds), rows), gathered, out.subspan(begin, here));
     return begin + here;
   };
   for (std::size_t begin = 0; begin < out.size();) {
@@ -449,6 +363,17 @@ bool has_rows_with_tips(BoundsCache& library, const Kind& kind) {
          });
 }
 
+bool has_layouts(BoundsCache& library, const Kind& kind) {
+  if (quadratic_fit(library, kind).empty()) return false;
+  for (const LevelStep::Net& net : std::vector<LevelStep::Net>(library.level_step(kind).nets)) {
+    if (net.corner == 3) continue;
+    const Kind* last = net.kind;
+    follow(library, net, [&](unsigned, const LevelStep::Net& from) { last = from.kind; });
+    if (!has_quadratic_rows(*last) || library.quadratic_rows(*last).layout().empty()) return false;
+  }
+  return true;
+}
+
 template <class T>
 SparseRows<T>::SparseRows(const Stencils& rows, std::size_t count, std::span<const std::uint32_t> names)
     : places(count) {
@@ -503,6 +428,50 @@ struct RowsWithTips<T>::Growth {
   }
 };
 
+namespace {
+
+template <class T>
+RestrictionOf<T> restriction_to(const LevelStep::Net& net) {
+  // Corner k of the piece's kind is corner k + first of the piece.
+  const std::size_t first = (6 + net.corner - net.own) % 3;
+  RestrictionOf<T> result;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const QuadraticWeights& weights =
+        quarter_rows().to_child[net.corner][k < 3 ? (k + first) % 3 : 3 + (k + first) % 3];
+    std::transform(weights.begin(), weights.end(), result[k].begin(),
+                   [](double weight) { return static_cast<T>(weight); });
+  }
+  return result;
+}
+
+template <class T>
+TipLayout<T> layout_of(BoundsCache& library, const Kind& kind) {
+  const QuadraticRows& rows = library.quadratic_rows(kind);
+  TipLayout<T> layout;
+  for (std::size_t i = 0; i < rows.layout().size(); ++i) {
+    const auto [u, v] = rows.layout()[i];
+    const double largest = rows.largest()[i] * (1 + 2 * roundoff_of<T>);
+    layout.places.push_back({static_cast<T>(u), static_cast<T>(v), static_cast<T>(largest)});
+    layout.reach += enlarged(largest * (1 + std::fabs(u) + std::fabs(v)));
+  }
+  double spread = 1;
+  for (const auto& [u, v] : rows.offsets()) {
+    layout.offsets.push_back({static_cast<T>(u), static_cast<T>(v)});
+    spread = std::max(spread, 1 + std::fabs(u) + std::fabs(v));
+  }
+  layout.offset_error = rows.offset_error() + 12 * roundoff_of<T> * spread;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Stencils::Row row = kind.corner_limits().row(k);
+    layout.to_corner[k].assign(kind.control_count(), 0);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      layout.to_corner[k][row.sources[i]] = static_cast<T>(row.weights[i]);
+    }
+  }
+  return layout;
+}
+
+}  // namespace
+
 // Steps, each once.
 template <class T>
 struct RowsWithTips<T>::Maker {
@@ -518,13 +487,19 @@ struct RowsWithTips<T>::Maker {
     const std::size_t count = of.points.row_count();
     rows.most_points_ = std::max(rows.most_points_, count);
     Step made{SparseRows<T>(of.points, count, names),
-              SparseRows<T>(of.bezier, inner ? of.inner : of.bezier.row_count())};
+              SparseRows<T>(of.bezier, inner ? of.inner : of.bezier.row_count()),
+              {}};
+    for (const QuadraticWeights& weights : of.quadratic) {
+      std::array<T, 6>& own_weights = made.quadratic.emplace_back();
+      for (std::size_t k = 0; k < 6; ++k) own_weights[k] = static_cast<T>(weights[k]);
+    }
     own = rows.steps_.emplace_back(std::make_unique<const Step>(std::move(made))).get();
     return own;
   }
   void widen(const Growth& growth) {
     rows.error_of_points_ = std::max(rows.error_of_points_, growth.of_points);
     rows.error_of_largest_ = std::max(rows.error_of_largest_, growth.of_largest);
+    rows.growth_ = std::max(rows.growth_, growth.size);
   }
   void pass_on(const LevelStep& step, Growth& growth) {
     growth.pass_on(step.points);
@@ -540,9 +515,11 @@ struct RowsWithTips<T>::Maker {
     for (const LevelStep::Net& net : std::vector<LevelStep::Net>(library.level_step(kind).nets)) {
       if (net.corner < 3) {
         result.tip_control = net.control;
+        result.to_tip = restriction_to<T>(net);
         continue;
       }
       result.middle = step(*net.kind, net.control, false);
+      result.to_middle = restriction_to<T>(net);
       Growth there = growth;
       pass_on(library.level_step(*net.kind), there);
     }
@@ -552,7 +529,7 @@ struct RowsWithTips<T>::Maker {
 
 // Derivations/rounding.md, "Batches".
 template <class T>
-RowsWithTips<T>::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&kind) {
+RowsWithTips<T>::RowsWithTips(BoundsCache& library, const Kind& kind, TipsBy by) : kind_(&kind) {
   Maker maker{*this, library, {}};
   Growth of_first;
   first_ = maker.level(kind, {}, false, of_first);
@@ -560,6 +537,7 @@ RowsWithTips<T>::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&k
     if (net.corner == 3) continue;
     Tip& tip = tips_.emplace_back();
     tip.control = net.control;
+    tip.from_patch = restriction_to<T>(net);
     const Kind* last = net.kind;
     Growth growth = of_first;
     follow(library, net, [&](unsigned level, const LevelStep::Net& from) {
@@ -567,8 +545,33 @@ RowsWithTips<T>::RowsWithTips(BoundsCache& library, const Kind& kind) : kind_(&k
       tip.levels[level] = maker.level(*from.kind, from.control, true, growth);
       last = from.kind;
     });
-    tip.table = flatten(library.tip_table(*last), *last, tip.columns);
+    if (by == TipsBy::tables) {
+      tip.table = flatten(library.tip_table(*last), *last, tip.columns);
+    } else {
+      tip.layout = layout_of<T>(library, *last);
+    }
   }
+  if (by == TipsBy::layouts) {
+    for (const double weight : quadratic_fit(library, kind)) fit_.push_back(static_cast<T>(weight));
+  }
+}
+
+template <class T>
+std::size_t RowsWithTips<T>::bytes() const {
+  const auto of = [](const SparseRows<T>& rows) {
+    return rows.runs.size() * sizeof(typename SparseRows<T>::Run) +
+           (rows.places.size() + rows.sources.size()) * sizeof(std::uint32_t) +
+           rows.weights.size() * sizeof(T);
+  };
+  std::size_t sum = fit_.size() * sizeof(T) + tips_.size() * sizeof(Tip);
+  for (const auto& step : steps_)
+    sum += of(step->points) + of(step->bezier) + step->quadratic.size() * sizeof(step->quadratic[0]);
+  for (const Tip& tip : tips_) {
+    sum += tip.columns.size() * sizeof(tip.columns[0]);
+    for (const Level& level : tip.levels) sum += level.tip_control.size() * sizeof(std::uint32_t);
+    sum += (tip.layout.places.size() + 2 * tip.layout.offsets.size()) * 3 * sizeof(T);
+  }
+  return sum;
 }
 
 template <class T>

@@ -104,6 +104,57 @@ SNUG_FLAT void ExtentsAlong(const Axes& axes, std::span<const SetNumbers> sets,
   }
 }
 
+constexpr std::size_t most_singles = 16;
+using SingleTag = hn::CappedTag<float, most_singles>;
+
+SNUG_FLAT void ExtentsOfTriangles(const Axes& axes, std::span<const SetTriangle> sets, SetSides* sides,
+                                  Extent* all) {
+  const SingleTag d;
+  using S = hn::Vec<SingleTag>;
+  constexpr std::size_t number_count = sizeof(SetTriangle) / sizeof(float);
+  static_assert(number_count == 10);
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN float rows[number_count][most_singles], lane[2][most_singles];
+  S least[3], most[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    least[k] = hn::Set(d, INFINITY);
+    most[k] = hn::Set(d, -INFINITY);
+  }
+  for (std::size_t begin = 0; begin < sets.size(); begin += lanes) {
+    const std::size_t here = std::min(lanes, sets.size() - begin);
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const auto* const from = reinterpret_cast<const float*>(&sets[begin + std::min(l, here - 1)]);
+      for (std::size_t r = 0; r < number_count; ++r) rows[r][l] = from[r];
+    }
+    const S reach = hn::Load(d, rows[number_count - 1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3<S> w{hn::Set(d, static_cast<float>(axes[k].x)), hn::Set(d, static_cast<float>(axes[k].y)),
+                      hn::Set(d, static_cast<float>(axes[k].z))};
+      S height[3];
+      for (std::size_t c = 0; c < 3; ++c) {
+        height[c] =
+            dot(w, {hn::Load(d, rows[3 * c]), hn::Load(d, rows[3 * c + 1]), hn::Load(d, rows[3 * c + 2])});
+      }
+      const S lower = hn::Sub(hn::Min(height[0], hn::Min(height[1], height[2])), reach),
+              upper = hn::Add(hn::Max(height[0], hn::Max(height[1], height[2])), reach);
+      least[k] = hn::Min(least[k], lower);
+      most[k] = hn::Max(most[k], upper);
+      hn::Store(hn::Max(lower, hn::Set(d, -1e6F)), d, lane[0]);
+      hn::Store(hn::Min(upper, hn::Set(d, 1e6F)), d, lane[1]);
+      for (std::size_t l = 0; l < here; ++l) {
+        sides[begin + l].lower[k] = lane[0][l];
+        sides[begin + l].upper[k] = lane[1][l];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    hn::Store(least[k], d, lane[0]);
+    hn::Store(most[k], d, lane[1]);
+    for (std::size_t l = 0; l < lanes; ++l)
+      all[k].add({static_cast<double>(lane[0][l]), static_cast<double>(lane[1][l])});
+  }
+}
+
 }  // namespace
 }  // namespace snug::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -112,6 +163,7 @@ HWY_AFTER_NAMESPACE();
 namespace snug::kernels {
 
 HWY_EXPORT(ExtentsAlong);
+HWY_EXPORT(ExtentsOfTriangles);
 
 SetNumbers numbers_of(const FittedSet& set) {
   SetNumbers numbers{};
@@ -144,6 +196,47 @@ SetNumbers numbers_of(const FittedSet& set) {
   numbers.tilt = across_sq > 0 ? std::min(set.normal_error / std::sqrt(across_sq), 0x1p500) : 0x1p500;
   numbers.slack = 64 * unit_roundoff * (largest + max_abs(numbers.net[0]));
   return numbers;
+}
+
+SetTriangle triangle_of(const FittedSet& set) {
+  SetTriangle result{};
+  std::array<Point3, 3> corners;
+  double reach = INFINITY;
+  if (set.error < INFINITY) {
+    std::array<Vector3, 3> bend;
+    Vector3 mean;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3 a = set.net[k] - Point3{}, b = set.net[(k + 1) % 3] - Point3{};
+      bend[k] = (set.net[3 + k] - Point3{}) - 0.5 * (a + b);
+      mean = mean + (1.0 / 3) * bend[k];
+    }
+    double unlike = 0;
+    for (const Vector3& b : bend) unlike = std::max(unlike, length(b - mean));
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = set.net[k] + (1.0 / 3) * mean;
+    reach = 2.0 / 3 * unlike + 1.0 / 3 * length(mean) + set.error;
+  } else {
+    corners.fill(set.box.centre);
+    reach = std::sqrt(length_sq(set.box.half));
+  }
+  constexpr double roundoff = roundoff_of<float>;
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) result.corner[k][a] = static_cast<float>(corners[k][a]);
+    largest = std::max(largest, max_abs(corners[k] - Point3{}));
+  }
+  reach = enlarged((1 + 16 * roundoff) * reach + 64 * roundoff * largest + 0x1p-100);
+  if (!(reach < 0x1p60)) {
+    result.corner = {};
+    reach = INFINITY;
+  }
+  result.reach = float_up(reach);
+  return result;
+}
+
+std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetTriangle> sets, SetSides* sides) {
+  std::array<Extent, 3> all;
+  HWY_DYNAMIC_DISPATCH(ExtentsOfTriangles)(axes, sets, sides, all.data());
+  return all;
 }
 
 std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetNumbers> sets,

@@ -21,6 +21,13 @@ struct SetNumbers {
 };
 [[nodiscard]] SetNumbers numbers_of(const FittedSet& set);
 
+/// A set within `reach` of a triangle: what boxes around many of them need.
+struct SetTriangle {
+  std::array<std::array<float, 3>, 3> corner;
+  float reach;  ///< that of roundings along axes included
+};
+[[nodiscard]] SetTriangle triangle_of(const FittedSet& set);
+
 /// What a set takes of three axes, nearly: for choices.
 struct SetSides {
   std::array<float, 3> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
@@ -43,5 +50,10 @@ struct SetSides {
 /// Cost:      about 0.05 microseconds a set.
 [[nodiscard]] std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetNumbers> sets,
                                                   std::span<const std::uint32_t> which, SetSides* sides);
+/// The same, looser, of sets of which there are many.
+/// Source:    derivations/boxes.md, "Boxes above are fitted to what lies below".
+/// Cost:      about 0.01 microseconds a set.
+[[nodiscard]] std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetTriangle> sets,
+                                                  SetSides* sides);
 
 }  // namespace snug::kernels

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include <snug/bvh/set_kernel.h>
@@ -184,12 +183,15 @@ class WideBvh::Builder {
         monitor_(monitor),
         leaves_((items.size() + leaf_size - 1) / leaf_size),
         sides_(items.size()),
-        keys_(items.size()),
-        sorted_keys_(items.size()),
-        moved_(items.size()) {
+        moved_sides_(items.size()),
+        moved_triangles_(items.size()),
+        moved_items_(items.size()) {
     numbers_.reserve(sets.size());
-    for (const FittedSet& set : sets) numbers_.push_back(kernels::numbers_of(set));
-    for (auto& sorted : sorted_) sorted.resize(items.size());
+    triangles_.reserve(sets.size());
+    for (const FittedSet& set : sets) {
+      numbers_.push_back(kernels::numbers_of(set));
+      triangles_.push_back(kernels::triangle_of(set));
+    }
   }
 
   // Its box.
@@ -197,7 +199,10 @@ class WideBvh::Builder {
     monitor_.checkpoint();
     const std::span<const std::uint32_t> items = items_.subspan(part.begin, part.size());
     const Axes axes = axes_around(sets_, items);
-    part.box = box_of(axes, kernels::extents_along(axes, numbers_, items, sides_.data() + part.begin));
+    if (part.size() <= few) return fit_tightly(part, axes);
+    const std::span<const kernels::SetTriangle> triangles =
+        std::span(triangles_).subspan(part.begin, part.size());
+    part.box = box_of(axes, kernels::extents_along(axes, triangles, sides_.data() + part.begin));
   }
   // Makes what is below a part that was fitted last; the name of it.
   std::uint32_t make(const Part& whole) {
@@ -210,7 +215,11 @@ class WideBvh::Builder {
     std::vector<Obb> boxes;
     std::vector<std::uint32_t> names;
     for (Part& part : parts_of(whole)) {
-      if (!part.box) fit(part);
+      if (!part.box) {
+        fit(part);
+      } else if (part.size() <= most_tight) {
+        fit_tightly(part, part.box->axes);
+      }
       boxes.push_back(*part.box);
       names.push_back(make(part));
     }
@@ -220,13 +229,18 @@ class WideBvh::Builder {
   [[nodiscard]] std::span<const Obb> leaves() const { return leaves_; }
 
  private:
-  // Parts of at most so many are split along the axes of their node.
-  static constexpr std::size_t few = 64;
+  void fit_tightly(Part& part, const Axes& axes) {
+    part.box = box_of(axes, kernels::extents_along(axes, numbers_, items_.subspan(part.begin, part.size()),
+                                                   sides_.data() + part.begin));
+  }
+
+  // Parts of at most so many are split along the axes of their node; boxes of nodes of at most so many are as tight as is known.
+  static constexpr std::size_t few = 64, most_tight = 512;
+  static constexpr std::size_t bin_count = 32;
 
   // Eight of them, the costliest halved first.
   std::vector<Part> parts_of(const Part& whole) {
     std::vector<Part> parts{whole};
-    sort(whole);
     while (parts.size() < WideNode::width) {
       const auto costliest = std::max_element(parts.begin(), parts.end(),
                                               [](const Part& x, const Part& y) { return x.cost < y.cost; });
@@ -234,9 +248,7 @@ class WideBvh::Builder {
       auto [first, second] = halves(*costliest);
       if (parts.size() + 1 < WideNode::width) {
         for (Part* half : {&first, &second}) {
-          if (half->size() <= few) continue;
-          fit(*half);
-          sort(*half);
+          if (half->size() > few) fit(*half);
         }
       }
       *costliest = first;
@@ -245,104 +257,140 @@ class WideBvh::Builder {
     return parts;
   }
 
-  // Across that axis, and there, where number times surface is least.
-  std::pair<Part, Part> halves(const Part& part) {
-    const std::size_t count = part.size();
-    // An eighth at least on either side, so that trees are not deep.
-    const std::size_t least_part = count > 8 * leaf_size ? count / 8 : 0;
-    float least = INFINITY, first_surface = 0, second_surface = 0;
-    std::size_t best = (count / leaf_size + 1) / 2 * leaf_size, best_axis = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t* const sorted = sorted_[k].data() + part.begin;
-      left_.clear();
-      kernels::SetSides first, last;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (i > 0 && i % leaf_size == 0) left_.push_back(first.surface());
-        first.add(sides_[sorted[i]]);
-      }
-      for (std::size_t i = count - 1; i > 0; --i) {
-        last.add(sides_[sorted[i]]);
-        if (i % leaf_size != 0 || i < least_part || count - i < least_part) continue;
-        const float left = left_[i / leaf_size - 1], right = last.surface();
-        const float cost = left * static_cast<float>(i) + right * static_cast<float>(count - i);
-        if (!(cost < least)) continue;
-        least = cost;
-        best = i;
-        best_axis = k;
-        first_surface = left;
-        second_surface = right;
+  // Items by their middles along an axis, in bins of one width.
+  struct Bins {
+    std::array<std::uint32_t, bin_count> counts{};
+    std::array<kernels::SetSides, bin_count> sides{};
+    float lower = INFINITY, scale = 0;
+    [[nodiscard]] float place_of(float twice_middle) const { return (twice_middle - lower) * scale; }
+    [[nodiscard]] static std::size_t bin(float place) {
+      return std::min(static_cast<std::size_t>(place), bin_count - 1);
+    }
+  };
+  static float twice_middle(const kernels::SetSides& sides, std::size_t axis) {
+    return sides.lower[axis] + sides.upper[axis];
+  }
+  void fill_bins(const Part& part) {
+    std::array<float, 3> lower, upper;
+    lower.fill(INFINITY);
+    upper.fill(-INFINITY);
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float middle = twice_middle(sides_[i], k);
+        lower[k] = std::min(lower[k], middle);
+        upper[k] = std::max(upper[k], middle);
       }
     }
-    const std::size_t middle = part.begin + best;
-    move(part, middle, best_axis);
+    for (std::size_t k = 0; k < 3; ++k) {
+      bins_[k] = {};
+      bins_[k].lower = lower[k];
+      if (upper[k] > lower[k]) {
+        bins_[k].scale = std::min(static_cast<float>(bin_count) / (upper[k] - lower[k]), 0x1p100F);
+      }
+    }
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t bin = Bins::bin(bins_[k].place_of(twice_middle(sides_[i], k)));
+        ++bins_[k].counts[bin];
+        bins_[k].sides[bin].add(sides_[i]);
+      }
+    }
+  }
+
+  // Where number times surface is least between two bins, and from there to a multiple of the sets of a leaf.
+  struct Cut {
+    std::size_t axis = 0, count = 0;
+    float first_surface = 0, second_surface = 0;
+  };
+  [[nodiscard]] Cut best_cut(std::size_t count) const {
+    // An eighth at least on either side, so that trees are not deep.
+    const std::size_t least_part = count > 8 * leaf_size ? count / 8 : 1;
+    Cut best{.count = (count / leaf_size + 1) / 2 * leaf_size};
+    float least = INFINITY;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Bins& bins = bins_[k];
+      std::array<float, bin_count> left{};
+      kernels::SetSides first, last;
+      for (std::size_t b = 0; b + 1 < bin_count; ++b) {
+        first.add(bins.sides[b]);
+        left[b] = first.surface();
+      }
+      std::size_t before = count;
+      for (std::size_t b = bin_count - 1; b > 0; --b) {
+        last.add(bins.sides[b]);
+        before -= bins.counts[b];
+        const std::size_t cut = (before + leaf_size / 2) / leaf_size * leaf_size;
+        if (cut < least_part || count < cut + least_part || before == 0 || before == count) continue;
+        const float right = last.surface(),
+                    cost = left[b - 1] * static_cast<float>(cut) + right * static_cast<float>(count - cut);
+        if (!(cost < least)) continue;
+        least = cost;
+        best = {k, cut, left[b - 1], right};
+      }
+    }
+    return best;
+  }
+
+  std::pair<Part, Part> halves(const Part& part) {
+    fill_bins(part);
+    const Cut cut = best_cut(part.size());
+    divide(part, cut);
     const auto half = [](std::size_t begin, std::size_t end, float surface) {
       return Part{begin, end, end - begin > leaf_size ? static_cast<float>(end - begin) * surface : -1};
     };
-    return {half(part.begin, middle, first_surface), half(middle, part.end, second_surface)};
+    const std::size_t middle = part.begin + cut.count;
+    return {half(part.begin, middle, cut.first_surface), half(middle, part.end, cut.second_surface)};
   }
 
-  // Items come to lie as they are sorted along an axis; either side of the middle keeps its order along the others.
-  void move(const Part& part, std::size_t middle, std::size_t axis) {
+  // So many of the items come first, those that are lowest along an axis; either side keeps its order.
+  void divide(const Part& part, const Cut& cut) {
+    const Bins& bins = bins_[cut.axis];
+    const auto key_of = [&](std::size_t i) {
+      return std::pair{twice_middle(sides_[i], cut.axis), static_cast<std::uint32_t>(i)};
+    };
+    std::size_t before = 0, middle = 0;
+    while (before + bins.counts[middle] <= cut.count) before += bins.counts[middle++];
+    keys_.clear();
     for (std::size_t i = part.begin; i < part.end; ++i) {
-      const std::uint32_t from = sorted_[axis][i];
-      moved_[i] = {sides_[from], items_[from]};
-      keys_[from] = i;
+      if (Bins::bin(bins.place_of(twice_middle(sides_[i], cut.axis))) == middle) keys_.push_back(key_of(i));
     }
-    for (std::size_t i = part.begin; i < part.end; ++i) std::tie(sides_[i], items_[i]) = moved_[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = part.begin; i < part.end; ++i)
-        sorted_[k][i] = static_cast<std::uint32_t>(keys_[sorted_[k][i]]);
-      const auto from = sorted_[k].begin();
-      std::stable_partition(from + static_cast<std::ptrdiff_t>(part.begin),
-                            from + static_cast<std::ptrdiff_t>(part.end),
-                            [middle](std::uint32_t i) { return i < middle; });
+    const auto less = [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : a.second < b.second;
+    };
+    ordering::nth_element(keys_.data(), cut.count - before, keys_.size(), less);
+    const auto first_beyond = keys_[cut.count - before];
+    std::size_t first = part.begin, last = part.begin + cut.count;
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      std::size_t& to = less(key_of(i), first_beyond) ? first : last;
+      moved_sides_[to] = sides_[i];
+      moved_triangles_[to] = triangles_[i];
+      moved_items_[to] = items_[i];
+      ++to;
     }
-  }
-
-  // Along each axis, by two digits of the middles: their order is a choice.
-  void sort(const Part& part) {
-    constexpr unsigned digit_bits = 8;
-    constexpr float largest = (1u << 2 * digit_bits) - 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      float lower = INFINITY, upper = -INFINITY;
-      for (std::size_t i = part.begin; i < part.end; ++i) {
-        const float twice = sides_[i].lower[k] + sides_[i].upper[k];
-        lower = std::min(lower, twice);
-        upper = std::max(upper, twice);
-      }
-      const float scale = upper > lower ? std::min(largest / (upper - lower), 0x1p100F) : 0;
-      for (std::size_t i = part.begin; i < part.end; ++i) {
-        const float height = (sides_[i].lower[k] + sides_[i].upper[k] - lower) * scale;
-        keys_[i] = std::uint64_t{static_cast<std::uint32_t>(std::min(height, largest))} << 32 | i;
-      }
-      sort_by_digit<digit_bits>(32, part, keys_, sorted_keys_);
-      sort_by_digit<digit_bits>(32 + digit_bits, part, sorted_keys_, keys_);
-      for (std::size_t i = part.begin; i < part.end; ++i)
-        sorted_[k][i] = static_cast<std::uint32_t>(keys_[i]);
-    }
-  }
-  template <unsigned bits>
-  static void sort_by_digit(unsigned first_bit, const Part& part, const std::vector<std::uint64_t>& from,
-                            std::vector<std::uint64_t>& to) {
-    const auto digit = [first_bit](std::uint64_t key) { return key >> first_bit & ((1u << bits) - 1); };
-    std::array<std::uint32_t, (1u << bits) + 1> begins{};
-    for (std::size_t i = part.begin; i < part.end; ++i) ++begins[digit(from[i]) + 1];
-    std::partial_sum(begins.begin(), begins.end(), begins.begin());
-    for (std::size_t i = part.begin; i < part.end; ++i) to[part.begin + begins[digit(from[i])]++] = from[i];
+    const auto back = [&](const auto& from, auto&& to) {
+      std::copy(from.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                from.begin() + static_cast<std::ptrdiff_t>(part.end),
+                to.begin() + static_cast<std::ptrdiff_t>(part.begin));
+    };
+    back(moved_sides_, sides_);
+    back(moved_triangles_, triangles_);
+    back(moved_items_, items_);
   }
 
   std::span<const FittedSet> sets_;
   std::vector<kernels::SetNumbers> numbers_;
+  // Of items, in their order; sides along the axes of the last box that was fitted around them.
+  std::vector<kernels::SetTriangle> triangles_;
   std::span<std::uint32_t> items_;
   std::vector<WideNode>& nodes_;
   const WorkMonitor& monitor_;
   std::vector<Obb> leaves_;
-  std::vector<kernels::SetSides>
-      sides_;  // of items, along the axes of the last box that was fitted around them
-  std::array<std::vector<std::uint32_t>, 3> sorted_;  // places of items along each axis, part by part
-  std::vector<std::uint64_t> keys_, sorted_keys_;
-  std::vector<std::pair<kernels::SetSides, std::uint32_t>> moved_;
-  std::vector<float> left_;
+  std::vector<kernels::SetSides> sides_;
+  std::array<Bins, 3> bins_;
+  std::vector<std::pair<float, std::uint32_t>> keys_;
+  std::vector<kernels::SetSides> moved_sides_;
+  std::vector<kernels::SetTriangle> moved_triangles_;
+  std::vector<std::uint32_t> moved_items_;
 };
 
 WideBvh::WideBvh(std::span<const FittedSet> sets, const WorkMonitor& monitor) : WideBvh(sets.size()) {

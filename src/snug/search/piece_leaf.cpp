@@ -151,17 +151,27 @@ PieceBuild build_alone(BoundsCache& library, const Patch& patch, BoundMethod met
   return result;
 }
 
-}  // namespace
-
-void build_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
-                  std::span<PieceBuild> out) {
+void build_by(decltype(fit_pieces)& fit, BoundsCache& library, std::span<const Patch> patches,
+              BoundMethod method, std::span<PieceBuild> out) {
   thread_local std::vector<PieceFit> fits;
   fits.resize(patches.size());
-  if (method == BoundMethod::rows) fit_pieces(library, patches, fits);
+  if (method == BoundMethod::rows) fit(library, patches, fits);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const bool fitted = method == BoundMethod::rows && fits[i].offset.radius >= 0;
     out[i] = fitted ? built(fits[i], patches[i]) : build_alone(library, patches[i], method);
   }
+}
+
+}  // namespace
+
+void build_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
+                  std::span<PieceBuild> out) {
+  build_by(fit_pieces, library, patches, method, out);
+}
+
+void build_sorted_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
+                         std::span<PieceBuild> out) {
+  build_by(fit_sorted_pieces, library, patches, method, out);
 }
 
 PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method) {

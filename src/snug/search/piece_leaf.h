@@ -93,6 +93,9 @@ struct PieceBuild {
 /// others.
 void build_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
                   std::span<PieceBuild> out);
+/// The same as fit_sorted_pieces() fits them.
+void build_sorted_pieces(BoundsCache& library, std::span<const Patch> patches, BoundMethod method,
+                         std::span<PieceBuild> out);
 
 /// The piece, for boxes above its own.
 [[nodiscard]] FittedSet fitted_set(const PieceBuild& piece);

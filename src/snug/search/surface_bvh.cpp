@@ -122,18 +122,29 @@ WideBvh SurfaceBvh::make_tree(const WorkMonitor& monitor) {
 }
 
 WideBvh SurfaceBvh::make_tight_tree(const WorkMonitor& monitor) {
+  // By kind, and in the order of the patches.
+  std::vector<std::uint64_t> order(patches_.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    order[i] = std::uint64_t{surface_->kind(patches_[i]).id().value()} << 32 | i;
+  std::sort(order.begin(), order.end());
   std::vector<PieceBuild> pieces(patches_.size());
   std::vector<FittedSet> sets(patches_.size());
   const std::size_t blocks = (patches_.size() + block - 1) / block;
   parallel_for(blocks, options_.threads, [&](std::size_t begin, std::size_t end) {
     std::vector<Patch> members(block);
+    std::vector<PieceBuild> built(block);
     for (std::size_t b = begin; b < end; ++b) {
       monitor.checkpoint();
-      const std::size_t first = b * block, here = std::min(block, patches_.size() - first);
-      for (std::size_t i = 0; i < here; ++i) surface_->patch(patches_[first + i], members[i]);
-      build_pieces(surface_->library(), std::span(members).first(here), options_.method,
-                   std::span(pieces).subspan(first, here));
-      for (std::size_t i = first; i < first + here; ++i) sets[i] = fitted_set(pieces[i]);
+      const std::span<const std::uint64_t> own =
+          std::span<const std::uint64_t>(order).subspan(b * block, std::min(block, order.size() - b * block));
+      const auto item = [&](std::size_t k) { return static_cast<std::uint32_t>(own[k]); };
+      for (std::size_t k = 0; k < own.size(); ++k) surface_->patch(patches_[item(k)], members[k]);
+      build_sorted_pieces(surface_->library(), std::span(members).first(own.size()), options_.method,
+                          std::span(built).first(own.size()));
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        pieces[item(k)] = built[k];
+        sets[item(k)] = fitted_set(built[k]);
+      }
     }
   });
   WideBvh tree(sets, monitor);

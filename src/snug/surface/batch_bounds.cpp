@@ -127,7 +127,7 @@ BatchBounds::BatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
       if (method == BoundMethod::table) {
         group.table = &library_->table(*group.kind);
       } else if (!group.polygon && kernels::has_rows_with_tips(*library_, *group.kind)) {
-        group.rows.emplace(*library_, *group.kind);
+        group.rows.emplace(*library_, *group.kind, kernels::TipsBy::tables);
         group.exact_rows = std::make_unique<Lazy<kernels::RowsWithTips<double>>>();
       } else {
         prepare_bounding_points(*library_, *group.kind);
@@ -216,8 +216,8 @@ void BatchBounds::fit_by_rows(const Group& group, std::span<const VertexId> cont
     kernels::fit_rows<float>(*group.rows, more_levels, scaled_, of, out);
   });
   fit_rest(controls, kernels::needs_digits, control, answers, [&](std::span<const VertexId> of, auto out) {
-    const auto& rows =
-        group.exact_rows->get([&] { return kernels::RowsWithTips<double>(*library_, *group.kind); });
+    const auto& rows = group.exact_rows->get(
+        [&] { return kernels::RowsWithTips<double>(*library_, *group.kind, kernels::TipsBy::tables); });
     kernels::fit_rows<double>(rows, more_levels, scaled_, of, out);
   });
 }
