@@ -217,6 +217,57 @@ TEST(bounding_tree, extents_of_sets_hold_them_whatever_is_beside) {
   }
 }
 
+TEST(bounding_tree, extents_of_triangles_hold_their_sets) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::size_t near = 0, samples = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::vector<AnySet> made;
+    std::vector<kernels::SetTriangle> triangles;
+    const double size = std::pow(10.0, -static_cast<double>(random() % 8));
+    for (std::size_t count = 1 + random() % 40; count > 0; --count) {
+      made.emplace_back(Point3{normal(random), normal(random), normal(random)}, size, random);
+      auto& [set, points] = made.back();
+      if (random() % 16 == 0) set.box.half.y = INFINITY;
+      if (random() % 4 == 0) {  // bent alike, and nothing beside
+        const Vector3 bend = size * Vector3{normal(random), normal(random), normal(random)};
+        set.error = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+          set.net[3 + k] = set.net[k] + 0.5 * (set.net[(k + 1) % 3] - set.net[k]) + bend;
+        points.assign(set.net.begin(), set.net.begin() + 3);
+      }
+      triangles.push_back(kernels::triangle_of(set));
+    }
+    const Axes axes = orthonormal_axes({normal(random), normal(random), normal(random)}, {1, 2, 3});
+    std::vector<kernels::SetSides> sides(made.size());
+    const std::array<Extent, 3> all = kernels::extents_along(axes, triangles, sides.data());
+    std::array<Extent, 3> one_by_one;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const FittedSet& set = made[i].set;
+      const std::array<Extent, 3> own =
+          kernels::extents_along(axes, std::span(triangles).subspan(i, 1), sides.data() + i);
+      for (std::size_t k = 0; k < 3; ++k) {
+        one_by_one[k].add(own[k]);
+        Extent points;
+        double wide = 0;
+        for (const Point3& p : made[i].points) points.add(dot(axes[k], p - Point3{}));
+        for (const Point3& p : set.net) wide = std::max(wide, length(p - set.net[0]));
+        EXPECT_LE(own[k].lower, points.lower);
+        EXPECT_GE(own[k].upper, points.upper);
+        if (!(set.error < INFINITY)) continue;
+        ++samples;
+        near += own[k].upper < points.upper + 0.1 * (points.upper - points.lower) + 1e-6;
+        EXPECT_LE(own[k].upper, points.upper + 2 * wide + 2 * set.error + 1e-4);
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(all[k].lower, one_by_one[k].lower);
+      EXPECT_EQ(all[k].upper, one_by_one[k].upper);
+    }
+  }
+  EXPECT_GT(near, samples / 10);
+}
+
 TEST(bounding_tree, of_sets_holds_every_set_once_below_boxes_that_contain_it) {
   std::mt19937_64 random(8);
   for (const std::size_t count : {1u, 7u, 8u, 9u, 64u, 65u, 513u, 3000u}) {
