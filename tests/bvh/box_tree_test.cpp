@@ -1,6 +1,7 @@
 #include <snug/bvh/box_tree.h>
 
 #include <gtest/gtest.h>
+#include <oracle/quad.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -88,15 +89,15 @@ TEST(box_gaps, are_lower_bounds_and_near_the_distance) {
     const auto place = [&] { return random() % 4 == 0 ? 0 : size * unit(random); };
     const Box3 a = box_at({place(), place(), place()}, 0.1, size * 0.1, 0.1 * std::fabs(place()));
     const Box3 b = box_at({place(), place(), place()}, 0.1, size * 0.2, 0.1 * std::fabs(place()));
-    __float128 exact_sq = 0;
+    oracle::Quad exact_sq = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const __float128 right = static_cast<__float128>(b.lower[axis]) - a.upper[axis];
-      const __float128 left = static_cast<__float128>(a.lower[axis]) - b.upper[axis];
-      const __float128 gap = right > left ? right : left;
+      const oracle::Quad right = static_cast<oracle::Quad>(b.lower[axis]) - a.upper[axis];
+      const oracle::Quad left = static_cast<oracle::Quad>(a.lower[axis]) - b.upper[axis];
+      const oracle::Quad gap = right > left ? right : left;
       if (gap > 0) exact_sq += gap * gap;
     }
     const double gap = gap_of(a, b);
-    ASSERT_LE(static_cast<__float128>(gap) * gap, exact_sq) << trial;
+    ASSERT_LE(static_cast<oracle::Quad>(gap) * gap, exact_sq) << trial;
     ASSERT_GE(gap * (1 + 1e-14) + 1e-300, std::sqrt(static_cast<double>(exact_sq))) << trial;
     ASSERT_EQ(gap, gap_of(b, a));
   }

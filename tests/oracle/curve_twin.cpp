@@ -1,4 +1,5 @@
 #include <oracle/curve_twin.h>
+#include <oracle/quad.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@ namespace oracle {
 
 namespace {
 
-__extension__ typedef __float128 Quad;
 using QuadPoint = std::array<Quad, 3>;
 
 void require(bool condition) {

@@ -53,7 +53,6 @@ std::vector<Quad> dual_mask(DualScheme scheme, std::size_t n) {
 namespace {
 
 using detail::dual_mask;
-using detail::Quad;
 using detail::QuadPoint;
 using Id = std::uint32_t;
 

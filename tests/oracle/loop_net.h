@@ -1,6 +1,7 @@
 #pragma once
 
 #include <oracle/mpfi_interval.h>
+#include <oracle/quad.h>
 #include <oracle/twin_mesh.h>
 
 #include <array>
@@ -12,8 +13,6 @@
 
 /// Loop refinement of nets that may be pieces of a larger mesh, over any arithmetic. Internal to the twins.
 namespace oracle::detail {
-
-__extension__ typedef __float128 Quad;  // 113-bit significand, 15-bit exponent
 
 constexpr std::uint32_t kSmallestValence = 3, kLargestValence = 1000;
 

@@ -14,7 +14,6 @@ namespace {
 using detail::Interval;
 using detail::Kind;
 using detail::Net;
-using detail::Quad;
 using detail::WeightTable;
 
 constexpr std::int64_t kOne = std::int64_t{1} << kDeepest;

@@ -13,7 +13,6 @@ namespace oracle {
 namespace {
 
 using detail::PolygonNet;
-using detail::Quad;
 using detail::QuadPoint;
 
 void require(bool condition) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
+#include <oracle/quad.h>
 #include <snug/scheme/creases.h>
 #include <testing/tagged.h>
 #include <testing/twins.h>
@@ -72,7 +73,7 @@ TEST(refine, and_limit_stencils_reach_the_twin_s_limit_points) {
   }
 }
 
-__extension__ using Quad = __float128;
+using oracle::Quad;
 
 // Where two sharpnesses end at once their exact mean is meant, which no double is.
 TEST(refine, weighs_what_ends_by_the_exact_mean) {

@@ -1,6 +1,7 @@
 #include <snug/search/placed_box.h>
 
 #include <gtest/gtest.h>
+#include <oracle/quad.h>
 #include <snug/surface/evaluate.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
@@ -12,11 +13,11 @@ namespace snug::placed_box_test {
 namespace {
 
 // The image of a point, in 113 bits.
-std::array<__float128, 3> placed(const Motion& pose, const Point3& p) {
-  std::array<__float128, 3> image;
+std::array<oracle::Quad, 3> placed(const Motion& pose, const Point3& p) {
+  std::array<oracle::Quad, 3> image;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     image[axis] = pose.offset()[axis];
-    for (std::size_t k = 0; k < 3; ++k) image[axis] += static_cast<__float128>(pose.row(axis)[k]) * p[k];
+    for (std::size_t k = 0; k < 3; ++k) image[axis] += static_cast<oracle::Quad>(pose.row(axis)[k]) * p[k];
   }
   return image;
 }

@@ -7,6 +7,7 @@
 #include <snug/surface/limit_surface.h>
 
 #include <gtest/gtest.h>
+#include <oracle/quad.h>
 
 #include <algorithm>
 #include <array>
@@ -140,7 +141,7 @@ void expect_holds(const RingDecay& decay, std::mt19937_64& random) {
   }
 }
 
-using Quad = __float128;
+using oracle::Quad;
 
 // What grows fastest under a step, but for constants, in some 30 digits: its row and column, by powers.
 struct FastestPair {

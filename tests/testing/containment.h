@@ -4,13 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include <oracle/quad.h>
 #include <snug/bounds/enclosure.h>
 
 /// Containment in extended precision, written anew: shares no arithmetic with bounds/. Long double is fast,
 /// quadruple precision has the last word on slivers.
 namespace snug::testing {
 
-__extension__ typedef __float128 Quad;
+using oracle::Quad;
 
 template <class Real>
 using Coordinates = std::array<Real, 3>;
