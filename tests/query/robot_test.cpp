@@ -169,6 +169,7 @@ TEST(robot, first_contacts_along_a_path_are_where_geometry_puts_them) {
   // All turn as one: links keep their places against each other.
   const TimeOfContact rigid = ask("upper", "hand", {at(robot, 0, 0.4, 0.3), at(robot, 3, 0.4, 0.3)});
   EXPECT_EQ(rigid.verdict, Verdict::separated);
+  EXPECT_EQ(rigid.time.lower, 1);  // the path's end, as for links that move
   // Two joints, against looks at many times.
   const std::vector<std::vector<double>> path{at(robot, 0, 0, 0), at(robot, 0, 2.6, 2.2)};
   const TimeOfContact two = ask("base", "hand", path), one = ask("upper", "hand", path);

@@ -189,6 +189,8 @@ LinkContact first_contact(const Robot& robot, const ShapePair& pair, std::span<c
   if (options.tolerance) how.tolerance = options.tolerance(size);
   if (options.margin) how.margin = options.margin(size);
   TimeOfContact answer = time_of_contact(a, motion_a, b, motion_b, how, run);
+  // Links that rest to each other have motions of no duration.
+  if (answer.verdict == Verdict::separated) answer.time.lower = static_cast<double>(positions.size() - 1);
   // A mesh that goes beyond its shape meets others before the shape does.
   const bool goes_beyond = robot.outward[shape_a.mesh] > 0 || robot.outward[shape_b.mesh] > 0;
   if (answer.verdict == Verdict::intersecting && goes_beyond) answer.verdict = Verdict::within;
