@@ -87,11 +87,14 @@ class SNUG_OT_distance(Asking, bpy.types.Operator):
         lines, nearest = [], None
         for (a, one), (b, other) in itertools.combinations(parts, 2):
             gap = snug.distance(one, other)
-            lines.append(f"{a.name} and {b.name}: {words.interval(gap.lower, gap.upper)} apart")
+            lines.append(words.apart(a.name, b.name, gap))
             if nearest is None or gap.upper < nearest[0].upper:
                 nearest = gap, a, b, 0.02 * min(one.size, other.size)
         gap, a, b, size = nearest
         on_a, on_b = gap.witness
+        if gap.upper == 0:
+            marks.points(context.scene, {f"contact {a.name} {b.name}": on_a}, size)
+            return lines
         marks.points(context.scene, {f"nearest on {a.name}": on_a, f"nearest on {b.name}": on_b}, size)
         marks.line(context.scene, on_a, on_b)
         return lines

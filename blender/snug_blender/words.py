@@ -19,9 +19,17 @@ def interval(lower, upper):
     return f"between {at_least(lower)} and {at_most(upper)}"
 
 
+def intersect(a, b):
+    return f"{a} and {b} intersect: proved"
+
+
 def pair(a, b, hit):
     if hit.verdict == "intersecting":
-        return f"{a} and {b} intersect: proved"
+        return intersect(a, b)
     if hit.verdict == "separated":
         return f"{a} and {b} do not touch: proved"
     return f"{a} and {b}: undecided, but at most {at_most(hit.upper)} apart"
+
+
+def apart(a, b, gap):
+    return intersect(a, b) if gap.upper == 0 else f"{a} and {b}: {interval(gap.lower, gap.upper)} apart"

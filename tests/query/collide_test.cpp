@@ -211,6 +211,22 @@ TEST(collide, measures_the_gap_if_asked) {
   }
 }
 
+// However coarse the precision: pairs that overlap by a tenth of it.
+TEST(collide, surfaces_that_meet_are_no_distance_apart) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
+  std::mt19937_64 random(38);
+  int proved = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Motion apart = testing::random_placement(random, {3, 0, 0});
+    const DistanceOptions fine{.absolute = 1e-5, .relative = {}}, coarse{.absolute = 0.01, .relative = {}};
+    const Distance gap = distance(pair.a, pair.b.at(apart), fine);
+    const Vector3 deeper = (1 + 1e-3 / gap.distance.upper) * (gap.witness[0].point - gap.witness[1].point);
+    const Motion place = Motion::translation(deeper) * apart;
+    proved += distance(pair.a, pair.b.at(place), coarse).distance.upper == 0;
+  }
+  EXPECT_GE(proved, 95);
+}
+
 TEST(collide, compares_meshes_of_very_different_size) {
   oracle::TwinMesh grain = oracle::meshes::icosahedron();
   for (oracle::Point& p : grain.points) p = {1e-9 * p[0], 1e-9 * p[1], 1e-9 * p[2]};

@@ -17,6 +17,8 @@ namespace snug {
 namespace {
 
 constexpr int max_crossing_attempts = 64;
+// Proofs of surfaces that overlap a little took less; where surfaces coincide there is none, and no end.
+constexpr std::uint64_t max_crossing_splits = 256;
 // Pairs that are followed down at the same time for a first upper bound.
 constexpr std::size_t beam = 4;
 // Limit points are evaluated where they may be nearer by so much of the precision.
@@ -172,12 +174,29 @@ class DistanceSearch {
   bool budget_spent_ = false;
 };
 
+// A search ends once its bounds are near enough, before it is seen that surfaces meet: a search for a common point alone.
+void prove_contact(const PlacedBvh& a, const PlacedBvh& b, const Run& run, Distance& answer) {
+  const std::uint64_t budget = run.max_splits.value_or(default_splits::distance);
+  const Run rest{.monitor = run.monitor,
+                 .max_splits = std::min(max_crossing_splits, budget - std::min(budget, answer.stats.splits))};
+  const Collision found = collide(a, b, {.tolerance = answer.distance.upper, .prove_contact = true}, rest);
+  answer.stats.box_tests += found.stats.box_tests;
+  answer.stats.triangle_tests += found.stats.triangle_tests;
+  answer.stats.evaluations += found.stats.evaluations;
+  answer.stats.splits += found.stats.splits;
+  if (found.verdict != Verdict::intersecting) return;
+  answer.distance = 0;
+  answer.witness = *found.witness;
+  answer.outcome = Outcome::complete;
+}
+
 }  // namespace
 
 Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options, const Run& run) {
   const DistanceOptions wanted = with_precision(options, a.model.surface().size(), b.model.surface().size());
   if (options.solid) require_solids(a, b);
   Distance answer = DistanceSearch(a, b, wanted, run).run();
+  if (answer.distance.lower == 0 && answer.distance.upper > 0) prove_contact(a, b, run, answer);
   if (!options.solid || answer.distance.upper == 0) return answer;
   const Nesting found =
       answer.distance.lower > 0 ? nesting(a, b, monitor_of(run)) : common_point(a, b, monitor_of(run));
