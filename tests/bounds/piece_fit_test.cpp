@@ -141,7 +141,7 @@ TEST_P(BothWays, is_as_narrow_as_the_fit_of_one_patch) {
       errors_alone += other.quadratic.error;
       radii += fit.offset.radius;
       radii_alone += other.offset.radius;
-      // What is flat but for its parameters has the tips' errors alone, which are some levels down.
+      // A patch that is flat but for its parameters has the tips' errors alone, which are some levels down.
       const double of_tips = 2e-5 * patches[i].largest;
       EXPECT_LE(fit.quadratic.error, 2 * other.quadratic.error + of_tips) << named.name;
       EXPECT_LE(fit.offset.radius, 2 * other.offset.radius + of_tips) << named.name;

@@ -18,7 +18,7 @@ namespace oracle::meshes {
 [[nodiscard]] TaggedMesh mixed_strip();  ///< open: triangle, quad, pentagon, triangle around one vertex
 [[nodiscard]] TaggedMesh book(std::uint32_t pages);  ///< quads on a common spine of two edges
 [[nodiscard]] TaggedMesh two_cubes_at_a_vertex();
-/// What is around some unit cubes with these least corners: a quad between each and each that is not among them, turned outwards.
+/// The surface of unit cubes with these least corners: a quad between each and each that is not among them, turned outwards.
 [[nodiscard]] TaggedMesh cells(const std::set<std::array<int, 3>>& corners);
 [[nodiscard]] TaggedMesh moebius(std::uint32_t n);  ///< n quads; one edge is crossed against its direction
 [[nodiscard]] TaggedMesh back_to_back();            ///< two quads with the same four corners: valence 2

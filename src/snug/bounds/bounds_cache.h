@@ -52,7 +52,7 @@ class BoundsCache {
   [[nodiscard]] const TipTable& tip_table(const Kind& kind);
   /// Rows for the quadratic triangles of a kind.
   [[nodiscard]] const QuadraticRows& quadratic_rows(const Kind& kind);
-  /// What fits pieces of a kind without a split. Null for others than has_layouts().
+  /// Rows that fit pieces of a kind without a split. Null for others than has_layouts().
   [[nodiscard]] const kernels::RowsWithTips<float>* piece_rows(const Kind& kind);
 
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.

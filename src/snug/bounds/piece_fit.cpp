@@ -278,19 +278,27 @@ class ByRows {
   std::vector<kernels::PieceToFit> pieces_;
 };
 
+struct Memory {
+  Parts parts;
+  ByRows by_rows;
+  std::vector<std::size_t> which;
+};
+Memory& memory_of_thread() {
+  thread_local Memory memory;
+  return memory;
+}
+
 }  // namespace
 
 void fit_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out) {
-  thread_local Parts parts;
+  Parts& parts = memory_of_thread().parts;
   parts.begin();
   for (std::size_t i = 0; i < patches.size(); ++i) parts.add(patches[i], i, out);
   parts.fit(library, out);
 }
 
 void fit_sorted_pieces(BoundsCache& library, std::span<const Patch> patches, std::span<PieceFit> out) {
-  thread_local ByRows by_rows;
-  thread_local std::vector<std::size_t> which;
-  thread_local Parts parts;
+  auto& [parts, by_rows, which] = memory_of_thread();
   parts.begin();
   for (std::size_t begin = 0, end = 0; begin < patches.size(); begin = end) {
     const Kind& kind = *patches[begin].kind;

@@ -33,7 +33,7 @@ constexpr double least_longest = 0x1p-40, max_frame_stretch = 0x1p-46;
 // How much of a bound may be rounding: a part of it.
 constexpr double part_of_rounding = 64;
 
-// What is found of patches in their frames: rows of lanes.
+// Results for patches, in their frames: rows of lanes.
 struct FoundLanes {
   float* first;
   std::size_t lanes;
@@ -144,7 +144,7 @@ class PieceLanes {
     add_step(*level.middle, next, memory_.middle, restricted(d_, quadratic, level.to_middle), hull);
   }
 
-  // What a vector is off by, whatever its direction, and along that of the hull.
+  // The error of a vector, whatever its direction, and along that of the hull.
   HWY_INLINE V any_of(const V (&error)[3]) const { return hn::Add(error[0], hn::Add(error[1], error[2])); }
   HWY_INLINE V along_of(const V (&error)[3]) const {
     return hn::Add(

@@ -48,7 +48,7 @@ enum class TipsBy { tables, layouts };
 template <class T>
 using RestrictionOf = std::array<std::array<T, 6>, 6>;
 
-/// What compares a tip with a quadratic, as QuadraticRows::distance() does.
+/// Compares a tip with a quadratic, as QuadraticRows::distance() does.
 template <class T>
 struct TipLayout {
   struct Place {

@@ -283,7 +283,7 @@ HWY_INLINE CasterHit walk_for(const CasterNode* nodes, const CasterBlock* blocks
       const CasterNode& node = nodes[top.name];
       float enter[caster_width];
       const std::uint32_t met = boxes(node.boxes, ray, 0, from, best.t, enter) & node.taken;
-      // What blocks a ray is hardly where it begins, beside a surface that it leaves.
+      // Shadow rays begin beside the surface that they leave, and are blocked farther on.
       constexpr auto order =
           query == CasterQuery::any ? OpenNodes::Order::farthest_first : OpenNodes::Order::nearest_first;
       open.add<order>(node.children, met, enter);

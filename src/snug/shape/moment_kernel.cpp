@@ -30,7 +30,7 @@ struct Grid {
   [[nodiscard]] constexpr std::size_t count() const { return place(0, rows); }
 };
 
-// What depends on the degree of parts alone.
+// Numbers that depend on the degree of parts alone.
 template <Domain of, std::size_t n>
 struct Polynomials {
   static constexpr bool triangle = of == Domain::triangle;
