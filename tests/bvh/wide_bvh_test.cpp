@@ -117,7 +117,11 @@ TEST(bounding_tree, holds_every_item_once_below_boxes_that_contain_it) {
 
 // A quadratic triangle of any shape, and points within its error of it.
 struct AnySet {
-  FittedSet set;
+  Obb box;
+  std::array<Point3, 6> net;
+  double error;
+  Vector3 normal_of_error{};
+  double normal_error = 0;
   std::vector<Point3> points;
 
   AnySet(const Point3& centre, double size, std::mt19937_64& random) {
@@ -126,16 +130,16 @@ struct AnySet {
       return length * Vector3{normal(random), normal(random), normal(random)};
     };
     const double bend = std::array{0.0, 0.01, 1.0}[random() % 3] * size;
-    set.error = random() % 5 == 0 ? INFINITY : std::array{0.0, 1e-3, 0.3}[random() % 3] * size;
-    for (std::size_t k = 0; k < 3; ++k) set.net[k] = centre + vector(size);
+    error = random() % 5 == 0 ? INFINITY : std::array{0.0, 1e-3, 0.3}[random() % 3] * size;
+    for (std::size_t k = 0; k < 3; ++k) net[k] = centre + vector(size);
     for (std::size_t k = 0; k < 3; ++k)
-      set.net[3 + k] = set.net[k] + 0.5 * (set.net[(k + 1) % 3] - set.net[k]) + vector(bend);
-    const double off = set.error < INFINITY ? set.error : 0;
+      net[3 + k] = net[k] + 0.5 * (net[(k + 1) % 3] - net[k]) + vector(bend);
+    const double off = error < INFINITY ? error : 0;
     const bool flat = random() % 2 == 0;
     if (flat) {
-      set.normal = vector(1);
-      set.normal = (1 / length(set.normal)) * set.normal;
-      set.normal_error = 0.1 * off;
+      normal_of_error = vector(1);
+      normal_of_error = (1 / length(normal_of_error)) * normal_of_error;
+      normal_error = 0.1 * off;
     }
     std::uniform_real_distribution<double> unit(0, 1);
     for (int i = 0; i < 12; ++i) {
@@ -145,21 +149,22 @@ struct AnySet {
       const double r = 1 - u - v;
       Vector3 p;
       const std::array weights{r * r, u * u, v * v, 2 * r * u, 2 * u * v, 2 * r * v};
-      for (std::size_t k = 0; k < 6; ++k) p = p + weights[k] * (set.net[k] - centre);
+      for (std::size_t k = 0; k < 6; ++k) p = p + weights[k] * (net[k] - centre);
       Vector3 away = vector(1);
       away = off * (1 - 1e-9) / length(away) * away;
-      if (flat) away = away - 0.9 * dot(set.normal, away) * set.normal;
+      if (flat) away = away - 0.9 * dot(normal_of_error, away) * normal_of_error;
       points.push_back(centre + p + away);
     }
     // A box that holds these points, and perhaps all of the net.
     std::vector<Point3> held = points;
-    if (random() % 2 == 0) held.insert(held.end(), set.net.begin(), set.net.end());
-    set.box = fit_box(principal_axes(held), [&](const Vector3& d) {
+    if (random() % 2 == 0) held.insert(held.end(), net.begin(), net.end());
+    box = fit_box(principal_axes(held), [&](const Vector3& d) {
       Extent extent;
       for (const Point3& p : held) extent.add({dot(d, p - Point3{}) - 1e-14, dot(d, p - Point3{}) + 1e-14});
       return extent;
     });
   }
+  [[nodiscard]] FittedSet set() const { return {box, net, error, normal_of_error, normal_error}; }
 };
 
 TEST(bounding_tree, extents_of_sets_hold_them_whatever_is_beside) {
@@ -169,45 +174,44 @@ TEST(bounding_tree, extents_of_sets_hold_them_whatever_is_beside) {
     const std::size_t count = 1 + random() % 20;
     const double size = std::pow(10.0, -static_cast<double>(random() % 8));
     std::vector<AnySet> made;
-    std::vector<kernels::SetNumbers> numbers;
+    std::vector<FittedSet> sets;
     std::vector<std::uint32_t> which;
     for (std::uint32_t i = 0; i < count; ++i) {
       made.emplace_back(Point3{normal(random), normal(random), normal(random)}, size, random);
-      if (random() % 16 == 0) made.back().set.box.half.y = INFINITY;
-      numbers.push_back(kernels::numbers_of(made.back().set));
+      if (random() % 16 == 0) made.back().box.half.y = INFINITY;
+      sets.push_back(made.back().set());
       which.insert(which.begin(), i);
     }
     const Axes axes = orthonormal_axes({normal(random), normal(random), normal(random)}, {1, 2, 3});
     std::vector<kernels::SetSides> sides(count);
-    const std::array<Extent, 3> all = kernels::extents_along(axes, numbers, which, sides.data());
+    const std::array<Extent, 3> all = kernels::extents_along(axes, sets, which, sides.data());
     std::array<Extent, 3> one_by_one;
     for (std::size_t place = 0; place < count; ++place) {
       const AnySet& here = made[which[place]];
       const std::array<Extent, 3> own =
-          kernels::extents_along(axes, numbers, std::span(which).subspan(place, 1), sides.data() + place);
+          kernels::extents_along(axes, sets, std::span(which).subspan(place, 1), sides.data() + place);
       for (std::size_t k = 0; k < 3; ++k) {
         one_by_one[k].add(own[k]);
-        const bool bounded = here.set.box.half.y < INFINITY;
+        const bool bounded = here.box.half.y < INFINITY;
         Extent points;
         for (const Point3& p : here.points) points.add(dot(axes[k], p - Point3{}));
         EXPECT_LE(own[k].lower, points.lower + 1e-14);
         EXPECT_GE(own[k].upper, points.upper - 1e-14);
         EXPECT_EQ(own[k].upper < INFINITY, bounded);
         if (!bounded) continue;
-        EXPECT_NEAR(sides[place].lower[k], own[k].lower, 1e-6);
-        EXPECT_NEAR(sides[place].upper[k], own[k].upper, 1e-6);
+        EXPECT_NEAR(sides[place].lower(k), own[k].lower, 1e-6);
+        EXPECT_NEAR(sides[place].upper(k), own[k].upper, 1e-6);
         // No wider than the box, nor than the net and the error.
-        const std::array<Vector3, 3>& box_axes = here.set.box.axes;
+        const std::array<Vector3, 3>& box_axes = here.box.axes;
         double reach = 0;
-        for (std::size_t a = 0; a < 3; ++a)
-          reach += here.set.box.half[a] * std::fabs(dot(axes[k], box_axes[a]));
-        const double middle = dot(axes[k], here.set.box.centre - Point3{});
+        for (std::size_t a = 0; a < 3; ++a) reach += here.box.half[a] * std::fabs(dot(axes[k], box_axes[a]));
+        const double middle = dot(axes[k], here.box.centre - Point3{});
         EXPECT_LE(own[k].upper, middle + reach + 1e-12);
         EXPECT_GE(own[k].lower, middle - reach - 1e-12);
         Extent net;
-        for (const Point3& p : here.set.net) net.add(dot(axes[k], p - Point3{}));
-        EXPECT_LE(own[k].upper, net.upper + here.set.error + 1e-12);
-        EXPECT_GE(own[k].lower, net.lower - here.set.error - 1e-12);
+        for (const Point3& p : here.net) net.add(dot(axes[k], p - Point3{}));
+        EXPECT_LE(own[k].upper, net.upper + here.error + 1e-12);
+        EXPECT_GE(own[k].lower, net.lower - here.error - 1e-12);
       }
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -227,23 +231,23 @@ TEST(bounding_tree, extents_of_triangles_hold_their_sets) {
     const double size = std::pow(10.0, -static_cast<double>(random() % 8));
     for (std::size_t count = 1 + random() % 40; count > 0; --count) {
       made.emplace_back(Point3{normal(random), normal(random), normal(random)}, size, random);
-      auto& [set, points] = made.back();
+      AnySet& set = made.back();
       if (random() % 16 == 0) set.box.half.y = INFINITY;
       if (random() % 4 == 0) {  // bent alike, and nothing beside
         const Vector3 bend = size * Vector3{normal(random), normal(random), normal(random)};
         set.error = 0;
         for (std::size_t k = 0; k < 3; ++k)
           set.net[3 + k] = set.net[k] + 0.5 * (set.net[(k + 1) % 3] - set.net[k]) + bend;
-        points.assign(set.net.begin(), set.net.begin() + 3);
+        set.points.assign(set.net.begin(), set.net.begin() + 3);
       }
-      triangles.push_back(kernels::triangle_of(set));
+      triangles.push_back(kernels::triangle_of(set.set()));
     }
     const Axes axes = orthonormal_axes({normal(random), normal(random), normal(random)}, {1, 2, 3});
     std::vector<kernels::SetSides> sides(made.size());
     const std::array<Extent, 3> all = kernels::extents_along(axes, triangles, sides.data());
     std::array<Extent, 3> one_by_one;
     for (std::size_t i = 0; i < made.size(); ++i) {
-      const FittedSet& set = made[i].set;
+      const AnySet& set = made[i];
       const std::array<Extent, 3> own =
           kernels::extents_along(axes, std::span(triangles).subspan(i, 1), sides.data() + i);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -254,7 +258,7 @@ TEST(bounding_tree, extents_of_triangles_hold_their_sets) {
         for (const Point3& p : set.net) wide = std::max(wide, length(p - set.net[0]));
         EXPECT_LE(own[k].lower, points.lower);
         EXPECT_GE(own[k].upper, points.upper);
-        if (!(set.error < INFINITY)) continue;
+        if (!(set.error < INFINITY) || !(set.box.half.y < INFINITY)) continue;
         ++samples;
         near += own[k].upper < points.upper + 0.1 * (points.upper - points.lower) + 1e-6;
         EXPECT_LE(own[k].upper, points.upper + 2 * wide + 2 * set.error + 1e-4);
@@ -276,7 +280,7 @@ TEST(bounding_tree, of_sets_holds_every_set_once_below_boxes_that_contain_it) {
     std::vector<std::vector<Point3>> points(12);
     for (const Point3& centre : centres) {
       const AnySet made(centre, 0.03, random);
-      sets.push_back(made.set);
+      sets.push_back(made.set());
       for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(made.points[i]);
     }
     const WideBvh tree(sets);
@@ -292,13 +296,12 @@ TEST(bounding_tree, of_sets_is_not_deep) {
   for (int i = 0; i < 2000; ++i) {
     const double size = std::pow(0.98, i);
     const AnySet made({size, 0, 0}, 0.1 * size, random);
-    sets.push_back(made.set);
+    sets.push_back(made.set());
     points.push_back(made.points[0]);
   }
   expect_every_item_once(WideBvh(sets), points, 12);
   // Nothing is apart from a set without end, and all others have their boxes.
-  sets[5].box.half = {INFINITY, INFINITY, INFINITY};
-  sets[5].error = INFINITY;
+  sets[5] = FittedSet();
   const WideBvh tree(sets);
   EXPECT_EQ(tree.box().half.x, INFINITY);
   std::vector<std::uint32_t> below;

@@ -250,9 +250,11 @@ class ByRows {
   void fit(const kernels::RowsWithTips<float>& rows, std::span<const Patch> patches,
            std::vector<std::size_t>& which, std::span<PieceFit> out) {
     const std::size_t count = which.size();
-    shapes_.resize(count);
-    frames_.resize(count);
-    bounds_.resize(count);
+    if (shapes_.size() < count) {
+      shapes_.resize(count);
+      frames_.resize(count);
+      bounds_.resize(count);
+    }
     pieces_.clear();
     for (std::size_t i = 0; i < count; ++i)
       pieces_.push_back({&patches[which[i]], &shapes_[i], &frames_[i], &bounds_[i]});
@@ -272,6 +274,7 @@ class ByRows {
   }
 
  private:
+  // As many as there ever were.
   std::vector<PartShape> shapes_;
   std::vector<PatchFrame> frames_;
   std::vector<PartBounds> bounds_;

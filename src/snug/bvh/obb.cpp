@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
@@ -59,11 +58,26 @@ std::array<Vector3, 3> axes_of(const Matrix& covariance) {
   return {a, b, cross(a, b)};
 }
 
-void add_outer(Matrix& m, const Vector3& d, double weight) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) m[i][j] += weight * d[i] * d[j];
+// A sum of outer products.
+class Outer {
+ public:
+  void add(const Vector3& d) {
+    diagonal_ = diagonal_ + Vector3{d.x * d.x, d.y * d.y, d.z * d.z};
+    beside_ = beside_ + Vector3{d.x * d.y, d.y * d.z, d.z * d.x};
   }
-}
+  [[nodiscard]] Matrix matrix() const {
+    const auto& [xx, yy, zz] = diagonal_;
+    const auto& [xy, yz, zx] = beside_;
+    return {{{xx, xy, zx}, {xy, yy, yz}, {zx, yz, zz}}};
+  }
+  void add(const Outer& other, double weight) {
+    diagonal_ = diagonal_ + weight * other.diagonal_;
+    beside_ = beside_ + weight * other.beside_;
+  }
+
+ private:
+  Vector3 diagonal_, beside_;
+};
 
 // Bounds of dot(direction, x) over boxes.
 Extent extent_of(std::span<const Obb> boxes, const Vector3& direction) {
@@ -87,9 +101,9 @@ Extent extent_of(std::span<const Obb> boxes, const Vector3& direction) {
 
 namespace {
 
-// A box as seen along two axes that turn in their plane: its centre, and its half edges.
-struct Flat {
-  float centre[2], edges[3][2];
+// A box along three axes: its centre, then its half edges. The fourth place is of no use: vectors are of four.
+struct AlongAxes {
+  std::array<std::array<float, 4>, 4> of;
 };
 
 // Turns that axes are tried with: steps of a right angle. All at once, since vectors do so.
@@ -101,24 +115,24 @@ struct Turns {
 struct Sides {
   std::array<float, turn_count> first, second;
 };
-Sides sides_after(std::span<const Flat> boxes, const Turns& turns) {
+Sides sides_after(std::span<const AlongAxes> boxes, std::size_t i, std::size_t j, const Turns& turns) {
   std::array<float, turn_count> lower[2], upper[2];
-  for (std::size_t i = 0; i < 2; ++i) {
-    lower[i].fill(INFINITY);
-    upper[i].fill(-INFINITY);
+  for (std::size_t a = 0; a < 2; ++a) {
+    lower[a].fill(INFINITY);
+    upper[a].fill(-INFINITY);
   }
-  for (const Flat& box : boxes) {
+  for (const AlongAxes& box : boxes) {
     for (std::size_t t = 0; t < turn_count; ++t) {
       const float c = turns.cosine[t], s = turns.sine[t];
       float reach[2] = {0, 0};
-      for (const auto& edge : box.edges) {
-        reach[0] += std::fabs(c * edge[0] + s * edge[1]);
-        reach[1] += std::fabs(c * edge[1] - s * edge[0]);
+      for (std::size_t k = 1; k < 4; ++k) {
+        reach[0] += std::fabs(c * box.of[k][i] + s * box.of[k][j]);
+        reach[1] += std::fabs(c * box.of[k][j] - s * box.of[k][i]);
       }
-      const float centre[2] = {c * box.centre[0] + s * box.centre[1], c * box.centre[1] - s * box.centre[0]};
-      for (std::size_t i = 0; i < 2; ++i) {
-        lower[i][t] = std::min(lower[i][t], centre[i] - reach[i]);
-        upper[i][t] = std::max(upper[i][t], centre[i] + reach[i]);
+      const float centre[2] = {c * box.of[0][i] + s * box.of[0][j], c * box.of[0][j] - s * box.of[0][i]};
+      for (std::size_t a = 0; a < 2; ++a) {
+        lower[a][t] = std::min(lower[a][t], centre[a] - reach[a]);
+        upper[a][t] = std::max(upper[a][t], centre[a] + reach[a]);
       }
     }
   }
@@ -130,10 +144,46 @@ Sides sides_after(std::span<const Flat> boxes, const Turns& turns) {
   return sides;
 }
 
+// Boxes for choices, which one in `stride` of them will do for.
+template <class BoxOf>
+struct SomeBoxes {
+  const BoxOf& box;  // of a number below `count`
+  std::size_t count, stride = 1;
+  // Of these in turn.
+  [[nodiscard]] SomeBoxes at_most(std::size_t most) const {
+    const std::size_t here = (count + stride - 1) / stride;
+    return {box, count, stride * ((here + most - 1) / most)};
+  }
+};
+
+constexpr std::size_t max_boxes = 256, max_turned = 64;
+
+template <class BoxOf>
+std::span<const AlongAxes> seen_along(const Axes& axes, const SomeBoxes<BoxOf>& boxes,
+                                      std::array<AlongAxes, max_turned>& seen) {
+  std::array<std::array<float, 4>, 3> columns{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t k = 0; k < 3; ++k) columns[k][a] = static_cast<float>(axes[a][k]);
+  }
+  const auto along = [&columns](const Vector3& v, std::array<float, 4>& out) {
+    const auto x = static_cast<float>(v.x), y = static_cast<float>(v.y), z = static_cast<float>(v.z);
+    for (std::size_t a = 0; a < 4; ++a) out[a] = x * columns[0][a] + y * columns[1][a] + z * columns[2][a];
+  };
+  const Point3 origin = boxes.box(0).centre;
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < boxes.count; b += boxes.stride) {
+    const Obb& box = boxes.box(b);
+    AlongAxes& here = seen[count++];
+    along(box.centre - origin, here.of[0]);
+    for (std::size_t k = 0; k < 3; ++k) along(box.half[k] * box.axes[k], here.of[1 + k]);
+  }
+  return {seen.data(), count};
+}
+
 // Axes turned about the one of the least extent, then about that of the largest, so that a box around boxes
-// has less surface. Any axes will do, so single precision is enough, and so are some of many boxes.
-std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<const Obb> boxes) {
-  constexpr std::size_t max_boxes = 64;
+// has less surface. Any axes will do, so single precision is enough.
+template <class BoxOf>
+Axes turned_to_fit(Axes axes, const SomeBoxes<BoxOf>& boxes) {
   static const Turns turns = [] {
     Turns made;
     for (std::size_t t = 0; t < turn_count; ++t) {
@@ -143,49 +193,75 @@ std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<cons
     }
     return made;
   }();
-  const std::size_t stride = (boxes.size() + max_boxes - 1) / max_boxes;
-  std::array<Flat, max_boxes> flat;
-  std::array<float, 3> sides;
-  const auto flatten = [&](std::size_t i, std::size_t j) {
-    std::size_t count = 0;
-    for (std::size_t b = 0; b < boxes.size(); b += stride) {
-      const Vector3 from = boxes[b].centre - boxes[0].centre;
-      Flat& out = flat[count++];
-      out.centre[0] = static_cast<float>(dot(axes[i], from));
-      out.centre[1] = static_cast<float>(dot(axes[j], from));
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vector3 edge = boxes[b].half[k] * boxes[b].axes[k];
-        out.edges[k][0] = static_cast<float>(dot(axes[i], edge));
-        out.edges[k][1] = static_cast<float>(dot(axes[j], edge));
-      }
+  std::array<AlongAxes, max_turned> memory;
+  const std::span<const AlongAxes> seen = seen_along(axes, boxes, memory);
+  std::array<float, 4> sides, lower, upper;
+  lower.fill(INFINITY);
+  upper.fill(-INFINITY);
+  for (const auto& [of] : seen) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const float reach = std::fabs(of[1][a]) + std::fabs(of[2][a]) + std::fabs(of[3][a]);
+      lower[a] = std::min(lower[a], of[0][a] - reach);
+      upper[a] = std::max(upper[a], of[0][a] + reach);
     }
-    return std::span<const Flat>(flat.data(), count);
-  };
-  // The first turn is none.
-  const Sides others = sides_after(flatten(1, 2), turns);
-  sides = {sides_after(flatten(0, 1), turns).first[0], others.first[0], others.second[0]};
+  }
+  for (std::size_t a = 0; a < 4; ++a) sides[a] = upper[a] - lower[a];
   for (const bool least : {true, false}) {
-    const auto about = static_cast<std::size_t>((least ? std::min_element(sides.begin(), sides.end())
-                                                       : std::max_element(sides.begin(), sides.end())) -
+    const auto about = static_cast<std::size_t>((least ? std::min_element(sides.begin(), sides.begin() + 3)
+                                                       : std::max_element(sides.begin(), sides.begin() + 3)) -
                                                 sides.begin());
     const std::size_t i = (about + 1) % 3, j = (about + 2) % 3;
-    const Sides turned = sides_after(flatten(i, j), turns);
+    const Sides turned = sides_after(seen, i, j, turns);
     float best = INFINITY;
-    std::array<double, 2> turn{1, 0};
+    std::size_t turn = 0;
     for (std::size_t t = 0; t < turn_count; ++t) {
       const float x = turned.first[t], y = turned.second[t], area = x * y + (x + y) * sides[about];
       if (!(area < best)) continue;
       best = area;
-      const double angle = static_cast<double>(t) * std::numbers::pi / (2 * turn_count);
-      turn = {std::cos(angle), std::sin(angle)};
+      turn = t;
       sides[i] = x;
       sides[j] = y;
     }
+    if (turn == 0) continue;
+    const double angle = static_cast<double>(turn) * std::numbers::pi / (2 * turn_count);
     const Vector3 first = axes[i], second = axes[j];
-    axes[i] = turn[0] * first + turn[1] * second;
-    axes[j] = turn[0] * second - turn[1] * first;
+    axes[i] = std::cos(angle) * first + std::sin(angle) * second;
+    axes[j] = std::cos(angle) * second - std::sin(angle) * first;
+    if (!least) continue;
+    const float c = turns.cosine[turn], s = turns.sine[turn];
+    for (AlongAxes& box : std::span(memory).first(seen.size())) {
+      for (auto& v : box.of) {
+        const float x = v[i], y = v[j];
+        v[i] = c * x + s * y;
+        v[j] = c * y - s * x;
+      }
+    }
   }
   return axes;
+}
+
+template <class BoxOf>
+Axes principal_axes(const SomeBoxes<BoxOf>& boxes) {
+  Vector3 sum;
+  double count = 0;
+  for (std::size_t b = 0; b < boxes.count; b += boxes.stride, ++count)
+    sum = sum + (boxes.box(b).centre - Point3{});
+  const Point3 mean = Point3{} + (1.0 / count) * sum;
+  Outer centres, edges;
+  for (std::size_t b = 0; b < boxes.count; b += boxes.stride) {
+    const Obb& box = boxes.box(b);
+    centres.add(box.centre - mean);
+    for (std::size_t k = 0; k < 3; ++k) edges.add(box.half[k] * box.axes[k]);
+  }
+  centres.add(edges, 1.0 / 3);
+  return axes_of(centres.matrix());
+}
+
+// Axes for a box around boxes.
+template <class BoxOf>
+Axes axes_for(const SomeBoxes<BoxOf>& boxes) {
+  const SomeBoxes<BoxOf> some = boxes.at_most(max_boxes);
+  return turned_to_fit(principal_axes(some), some.at_most(max_turned));
 }
 
 }  // namespace
@@ -194,9 +270,9 @@ std::array<Vector3, 3> principal_axes(std::span<const Point3> points) {
   Vector3 sum;
   for (const Point3& p : points) sum = sum + (p - Point3{});
   const Point3 mean = Point3{} + (1.0 / static_cast<double>(std::max<std::size_t>(points.size(), 1))) * sum;
-  Matrix covariance{};
-  for (const Point3& p : points) add_outer(covariance, p - mean, 1);
-  return axes_of(covariance);
+  Outer outer;
+  for (const Point3& p : points) outer.add(p - mean);
+  return axes_of(outer.matrix());
 }
 
 // Where x is a corner of what the extents hold, dot(axis, x - centre) is off from dot(axis, x) - dot(axis,
@@ -245,20 +321,14 @@ Axes orthonormal_axes(const Vector3& a, const Vector3& b) {
 
 Axes axes_around(std::span<const Obb> boxes) {
   SNUG_EXPECT(!boxes.empty());
-  Vector3 sum;
-  for (const Obb& box : boxes) sum = sum + (box.centre - Point3{});
-  const Point3 mean = Point3{} + (1.0 / static_cast<double>(boxes.size())) * sum;
-  Matrix covariance{};
-  for (const Obb& box : boxes) {
-    add_outer(covariance, box.centre - mean, 1);
-    for (std::size_t k = 0; k < 3; ++k) {
-      add_outer(covariance, box.axes[k], box.half[k] * box.half[k] / 3);
-    }
-  }
-  return axes_of(covariance);
+  const auto box = [&](std::size_t i) -> const Obb& { return boxes[i]; };
+  return principal_axes(SomeBoxes<decltype(box)>{box, boxes.size()});
 }
 
-Obb merge(std::span<const Obb> boxes) { return merge(boxes, turned_to_fit(axes_around(boxes), boxes)); }
+Obb merge(std::span<const Obb> boxes) {
+  const auto box = [&](std::size_t i) -> const Obb& { return boxes[i]; };
+  return merge(boxes, axes_for(SomeBoxes<decltype(box)>{box, boxes.size()}));
+}
 
 // |w . d| <= |part| normal_error + |w - part n| error for any part: that which makes the sum least, as far as doubles know it.
 double error_along(const Vector3& w, const Vector3& n, double error, double normal_error) {
@@ -274,13 +344,32 @@ double error_along(const Vector3& w, const Vector3& n, double error, double norm
   return most * (1 + 0x1p-45) + 0x1p-47 * error;
 }
 
+FittedSet::FittedSet(const Obb& around, const std::array<Point3, 6>& points, double off, const Vector3& n,
+                     double off_normal) {
+  if (!std::isfinite(around.half.x + around.half.y + around.half.z)) return;
+  box = around;
+  // The box as a set of inequalities lies in that of the combinations of its axes, made larger by what these lack of
+  // orthonormality; at most 64 roundings.
+  box_error = 128 * unit_roundoff * (max_abs(box.centre - Point3{}) + box.half.x + box.half.y + box.half.z);
+  if (!(off < INFINITY)) return;
+  double largest = 0;
+  net[0] = points[0] - Point3{};
+  for (std::size_t k = 1; k < 6; ++k) {
+    net[k] = points[k] - points[0];
+    largest = std::max(largest, max_abs(net[k]));
+  }
+  normal = n;
+  error = off;
+  normal_error = off_normal;
+  const double across_sq = error * error - normal_error * normal_error;
+  // Any is right.
+  tilt = across_sq > 0 ? std::min(normal_error / std::sqrt(across_sq), 0x1p500) : 0x1p500;
+  slack = 64 * unit_roundoff * (largest + max_abs(net[0]));
+}
+
 Axes axes_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which) {
-  // Those of many boxes are about those of some.
-  constexpr std::size_t max_boxes = 256;
-  std::vector<Obb> boxes;
-  const std::size_t stride = (which.size() + max_boxes - 1) / max_boxes;
-  for (std::size_t i = 0; i < which.size(); i += stride) boxes.push_back(sets[which[i]].box);
-  return turned_to_fit(axes_around(boxes), boxes);
+  const auto box = [&](std::size_t i) -> const Obb& { return sets[which[i]].box; };
+  return axes_for(SomeBoxes<decltype(box)>{box, which.size()});
 }
 
 Obb merge(std::span<const Obb> boxes, const Axes& axes) {

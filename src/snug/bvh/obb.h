@@ -64,13 +64,21 @@ template <class Extents>
 /// Source:    derivations/quadratics.md, "Errors with a direction".
 [[nodiscard]] double error_along(const Vector3& w, const Vector3& n, double error, double normal_error);
 
-/// A set that boxes are fitted to: in a box, and off a quadratic Bezier triangle by differences as in error_along().
+/// A set that boxes are fitted to, as vectors read it: in a box, and off a quadratic Bezier triangle by differences as in
+/// error_along().
 struct FittedSet {
+  FittedSet() = default;
+  /// Requires:  `net`: corners, then middles of the edges 01, 12, 20; `error` infinite where nothing but the box is known.
+  FittedSet(const Obb& box, const std::array<Point3, 6>& net, double error, const Vector3& normal = {},
+            double normal_error = 0);
+
   Obb box;
-  std::array<Point3, 6> net{};  ///< corners, then middles of the edges 01, 12, 20
-  double error = INFINITY;      ///< infinite: nothing but the box is known
+  double box_error = INFINITY;   ///< of its extents; infinite: there is no box, and nothing is known
+  std::array<Vector3, 6> net{};  ///< the first corner, the other points from it
   Vector3 normal{};
-  double normal_error = 0;
+  double error = 0, normal_error = 0;
+  double tilt = 0;          ///< normal_error over what of the error is left across the normal
+  double slack = INFINITY;  ///< added to the error; infinite: nothing but the box is known
 };
 /// Axes that suit a box around one or more of these.
 [[nodiscard]] Axes axes_around(std::span<const FittedSet> sets, std::span<const std::uint32_t> which);

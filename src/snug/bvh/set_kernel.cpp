@@ -12,17 +12,17 @@ HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t most_lanes = 8, row_count = sizeof(SetNumbers) / sizeof(double);
+constexpr std::size_t most_lanes = 8, row_count = sizeof(FittedSet) / sizeof(double);
 using Tag = hn::CappedTag<double, most_lanes>;
 using V = hn::Vec<Tag>;
 using Point = Vec3<V>;
 
 HWY_INLINE V set(double x) { return hn::Set(Tag(), x); }
 
-// Numbers of SetNumbers, each of some sets; lanes beyond them repeat the last.
+// Numbers of some sets, each in a row; lanes beyond them repeat the last.
 class Block {
  public:
-  HWY_INLINE void gather(std::span<const SetNumbers> sets, std::span<const std::uint32_t> which) {
+  HWY_INLINE void gather(std::span<const FittedSet> sets, std::span<const std::uint32_t> which) {
     for (std::size_t l = 0; l < hn::Lanes(Tag()); ++l) {
       const auto* const from = reinterpret_cast<const double*>(&sets[which[std::min(l, which.size() - 1)]]);
       for (std::size_t r = 0; r < row_count; ++r) rows_[r][l] = from[r];
@@ -35,7 +35,7 @@ class Block {
   HWY_ALIGN double rows_[row_count][most_lanes];
 };
 
-// Rows of SetNumbers.
+// Rows of FittedSet.
 constexpr std::size_t centre = 0, axes_row = 3, halves = 12, box_error = 15, corner = 16, net = 19,
                       normal_row = 34, error_row = 37, normal_error = 38, tilt = 39, slack = 40;
 static_assert(row_count == 41);
@@ -83,7 +83,7 @@ HWY_INLINE ExtentV extent(const Block& block, const Vector3& axis) {
           hn::Min(hn::Add(middle, reach), hn::Add(hn::Add(height, most), off))};
 }
 
-SNUG_FLAT void ExtentsAlong(const Axes& axes, std::span<const SetNumbers> sets,
+SNUG_FLAT void ExtentsAlong(const Axes& axes, std::span<const FittedSet> sets,
                             std::span<const std::uint32_t> which, SetSides* sides, Extent* all) {
   const std::size_t lanes = hn::Lanes(Tag());
   Block block;
@@ -97,8 +97,8 @@ SNUG_FLAT void ExtentsAlong(const Axes& axes, std::span<const SetNumbers> sets,
       hn::Store(of_set.upper, Tag(), lane[1]);
       for (std::size_t l = 0; l < here; ++l) {
         all[k].add({lane[0][l], lane[1][l]});
-        sides[begin + l].lower[k] = static_cast<float>(std::max(lane[0][l], -1e6));
-        sides[begin + l].upper[k] = static_cast<float>(std::min(lane[1][l], 1e6));
+        sides[begin + l].reach[k] = static_cast<float>(std::min(-lane[0][l], 1e6));
+        sides[begin + l].reach[4 + k] = static_cast<float>(std::min(lane[1][l], 1e6));
       }
     }
   }
@@ -139,11 +139,11 @@ SNUG_FLAT void ExtentsOfTriangles(const Axes& axes, std::span<const SetTriangle>
               upper = hn::Add(hn::Max(height[0], hn::Max(height[1], height[2])), reach);
       least[k] = hn::Min(least[k], lower);
       most[k] = hn::Max(most[k], upper);
-      hn::Store(hn::Max(lower, hn::Set(d, -1e6F)), d, lane[0]);
+      hn::Store(hn::Min(hn::Neg(lower), hn::Set(d, 1e6F)), d, lane[0]);
       hn::Store(hn::Min(upper, hn::Set(d, 1e6F)), d, lane[1]);
       for (std::size_t l = 0; l < here; ++l) {
-        sides[begin + l].lower[k] = lane[0][l];
-        sides[begin + l].upper[k] = lane[1][l];
+        sides[begin + l].reach[k] = lane[0][l];
+        sides[begin + l].reach[4 + k] = lane[1][l];
       }
     }
   }
@@ -165,58 +165,26 @@ namespace snug::kernels {
 HWY_EXPORT(ExtentsAlong);
 HWY_EXPORT(ExtentsOfTriangles);
 
-SetNumbers numbers_of(const FittedSet& set) {
-  SetNumbers numbers{};
-  const Obb& box = set.box;
-  const bool bounded = std::isfinite(box.half.x + box.half.y + box.half.z);
-  if (bounded) {
-    numbers.box = {box.centre - Point3{}, box.axes[0], box.axes[1], box.axes[2], box.half};
-    // The box as a set of inequalities lies in that of the combinations of its axes, made larger by what these lack of
-    // orthonormality; at most 64 roundings.
-    numbers.box_error =
-        128 * unit_roundoff * (max_abs(box.centre - Point3{}) + box.half.x + box.half.y + box.half.z);
-  } else {
-    numbers.box_error = INFINITY;
-  }
-  if (!bounded || !(set.error < INFINITY)) {
-    numbers.slack = INFINITY;
-    return numbers;
-  }
-  double largest = 0;
-  numbers.net[0] = set.net[0] - Point3{};
-  for (std::size_t k = 1; k < 6; ++k) {
-    numbers.net[k] = set.net[k] - set.net[0];
-    largest = std::max(largest, max_abs(numbers.net[k]));
-  }
-  numbers.normal = set.normal;
-  numbers.error = set.error;
-  numbers.normal_error = set.normal_error;
-  const double across_sq = set.error * set.error - set.normal_error * set.normal_error;
-  // Any is right.
-  numbers.tilt = across_sq > 0 ? std::min(set.normal_error / std::sqrt(across_sq), 0x1p500) : 0x1p500;
-  numbers.slack = 64 * unit_roundoff * (largest + max_abs(numbers.net[0]));
-  return numbers;
-}
-
 SetTriangle triangle_of(const FittedSet& set) {
   SetTriangle result{};
   std::array<Point3, 3> corners;
   double reach = INFINITY;
-  if (set.error < INFINITY) {
+  if (set.slack < INFINITY) {
+    const std::array<Vector3, 3> from_first{Vector3{}, set.net[1], set.net[2]};
     std::array<Vector3, 3> bend;
     Vector3 mean;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3 a = set.net[k] - Point3{}, b = set.net[(k + 1) % 3] - Point3{};
-      bend[k] = (set.net[3 + k] - Point3{}) - 0.5 * (a + b);
+      bend[k] = set.net[3 + k] - 0.5 * (from_first[k] + from_first[(k + 1) % 3]);
       mean = mean + (1.0 / 3) * bend[k];
     }
     double unlike = 0;
     for (const Vector3& b : bend) unlike = std::max(unlike, length(b - mean));
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = set.net[k] + (1.0 / 3) * mean;
+    for (std::size_t k = 0; k < 3; ++k)
+      corners[k] = Point3{} + (set.net[0] + (from_first[k] + (1.0 / 3) * mean));
     reach = 2.0 / 3 * unlike + 1.0 / 3 * length(mean) + set.error;
   } else {
     corners.fill(set.box.centre);
-    reach = std::sqrt(length_sq(set.box.half));
+    reach = std::sqrt(length_sq(set.box.half)) + set.box_error;
   }
   constexpr double roundoff = roundoff_of<float>;
   double largest = 0;
@@ -239,7 +207,7 @@ std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetTriangl
   return all;
 }
 
-std::array<Extent, 3> extents_along(const Axes& axes, std::span<const SetNumbers> sets,
+std::array<Extent, 3> extents_along(const Axes& axes, std::span<const FittedSet> sets,
                                     std::span<const std::uint32_t> which, SetSides* sides) {
   std::array<Extent, 3> all;
   HWY_DYNAMIC_DISPATCH(ExtentsAlong)(axes, sets, which, sides, all.data());

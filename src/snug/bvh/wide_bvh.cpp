@@ -186,12 +186,8 @@ class WideBvh::Builder {
         moved_sides_(items.size()),
         moved_triangles_(items.size()),
         moved_items_(items.size()) {
-    numbers_.reserve(sets.size());
     triangles_.reserve(sets.size());
-    for (const FittedSet& set : sets) {
-      numbers_.push_back(kernels::numbers_of(set));
-      triangles_.push_back(kernels::triangle_of(set));
-    }
+    for (const FittedSet& set : sets) triangles_.push_back(kernels::triangle_of(set));
   }
 
   // Its box.
@@ -230,13 +226,15 @@ class WideBvh::Builder {
 
  private:
   void fit_tightly(Part& part, const Axes& axes) {
-    part.box = box_of(axes, kernels::extents_along(axes, numbers_, items_.subspan(part.begin, part.size()),
+    part.box = box_of(axes, kernels::extents_along(axes, sets_, items_.subspan(part.begin, part.size()),
                                                    sides_.data() + part.begin));
   }
 
   // Parts of at most so many are split along the axes of their node; boxes of nodes of at most so many are as tight as is known.
   static constexpr std::size_t few = 64, most_tight = 512;
-  static constexpr std::size_t bin_count = 32;
+  // Of more bins than items most are empty.
+  static constexpr std::size_t most_bins = 32;
+  static std::size_t bins_for(std::size_t items) { return items > few ? most_bins : 16; }
 
   // Eight of them, the costliest halved first.
   std::vector<Part> parts_of(const Part& whole) {
@@ -259,38 +257,49 @@ class WideBvh::Builder {
 
   // Items by their middles along an axis, in bins of one width.
   struct Bins {
-    std::array<std::uint32_t, bin_count> counts{};
-    std::array<kernels::SetSides, bin_count> sides{};
+    std::array<std::uint32_t, most_bins> counts{};
+    std::array<kernels::SetSides, most_bins> sides{};
     float lower = INFINITY, scale = 0;
-    [[nodiscard]] float place_of(float twice_middle) const { return (twice_middle - lower) * scale; }
-    [[nodiscard]] static std::size_t bin(float place) {
-      return std::min(static_cast<std::size_t>(place), bin_count - 1);
+    std::size_t count = most_bins;
+    void begin(std::size_t of, float from, float scaled_by) {
+      count = of;
+      lower = from;
+      scale = scaled_by;
+      std::fill_n(counts.begin(), count, 0u);
+      std::fill_n(sides.begin(), count, kernels::SetSides{});
+    }
+    [[nodiscard]] std::size_t bin_of(float twice_middle) const {
+      return std::min(static_cast<std::size_t>((twice_middle - lower) * scale), count - 1);
     }
   };
   static float twice_middle(const kernels::SetSides& sides, std::size_t axis) {
-    return sides.lower[axis] + sides.upper[axis];
+    return sides.upper(axis) + sides.lower(axis);
   }
   void fill_bins(const Part& part) {
-    std::array<float, 3> lower, upper;
+    const std::size_t count = bins_for(part.size());
+    std::array<float, 4> lower, upper, scale{};  // the last of no use, as in SetSides
     lower.fill(INFINITY);
     upper.fill(-INFINITY);
     for (std::size_t i = part.begin; i < part.end; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float middle = twice_middle(sides_[i], k);
+      const std::array<float, 8>& reach = sides_[i].reach;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const float middle = reach[4 + k] - reach[k];
         lower[k] = std::min(lower[k], middle);
         upper[k] = std::max(upper[k], middle);
       }
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      bins_[k] = {};
-      bins_[k].lower = lower[k];
-      if (upper[k] > lower[k]) {
-        bins_[k].scale = std::min(static_cast<float>(bin_count) / (upper[k] - lower[k]), 0x1p100F);
-      }
+      if (upper[k] > lower[k])
+        scale[k] = std::min(static_cast<float>(count) / (upper[k] - lower[k]), 0x1p100F);
+      bins_[k].begin(count, lower[k], scale[k]);
     }
     for (std::size_t i = part.begin; i < part.end; ++i) {
+      const std::array<float, 8>& reach = sides_[i].reach;
+      std::array<std::int32_t, 4> place;
+      for (std::size_t k = 0; k < 4; ++k)
+        place[k] = static_cast<std::int32_t>((reach[4 + k] - reach[k] - lower[k]) * scale[k]);
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t bin = Bins::bin(bins_[k].place_of(twice_middle(sides_[i], k)));
+        const std::size_t bin = std::min(static_cast<std::size_t>(place[k]), count - 1);
         ++bins_[k].counts[bin];
         bins_[k].sides[bin].add(sides_[i]);
       }
@@ -309,14 +318,14 @@ class WideBvh::Builder {
     float least = INFINITY;
     for (std::size_t k = 0; k < 3; ++k) {
       const Bins& bins = bins_[k];
-      std::array<float, bin_count> left{};
+      std::array<float, most_bins> left;
       kernels::SetSides first, last;
-      for (std::size_t b = 0; b + 1 < bin_count; ++b) {
+      for (std::size_t b = 0; b + 1 < bins.count; ++b) {
         first.add(bins.sides[b]);
         left[b] = first.surface();
       }
       std::size_t before = count;
-      for (std::size_t b = bin_count - 1; b > 0; --b) {
+      for (std::size_t b = bins.count - 1; b > 0; --b) {
         last.add(bins.sides[b]);
         before -= bins.counts[b];
         const std::size_t cut = (before + leaf_size / 2) / leaf_size * leaf_size;
@@ -352,7 +361,7 @@ class WideBvh::Builder {
     while (before + bins.counts[middle] <= cut.count) before += bins.counts[middle++];
     keys_.clear();
     for (std::size_t i = part.begin; i < part.end; ++i) {
-      if (Bins::bin(bins.place_of(twice_middle(sides_[i], cut.axis))) == middle) keys_.push_back(key_of(i));
+      if (bins.bin_of(twice_middle(sides_[i], cut.axis)) == middle) keys_.push_back(key_of(i));
     }
     const auto less = [](const auto& a, const auto& b) {
       return a.first != b.first ? a.first < b.first : a.second < b.second;
@@ -378,7 +387,6 @@ class WideBvh::Builder {
   }
 
   std::span<const FittedSet> sets_;
-  std::vector<kernels::SetNumbers> numbers_;
   // Of items, in their order; sides along the axes of the last box that was fitted around them.
   std::vector<kernels::SetTriangle> triangles_;
   std::span<std::uint32_t> items_;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #ifdef __FAST_MATH__
 #error "snug's bounds do not hold with -ffast-math"
@@ -39,18 +40,23 @@ template <class T = double>
 
 /// The neighbours of x: with correctly rounded x they enclose the exact value.
 /// As std::nextafter(), without a call.
-[[nodiscard]] constexpr double rounded_up(double x) {
-  if (!(x < std::numeric_limits<double>::infinity())) return x;
-  const auto bits = std::bit_cast<std::int64_t>(x);
-  constexpr std::int64_t negative_zero = std::numeric_limits<std::int64_t>::min();
-  return std::bit_cast<double>(bits == negative_zero ? 1 : bits < 0 ? bits - 1 : bits + 1);
+template <class T>
+[[nodiscard]] constexpr T rounded_up(T x) {
+  using Bits = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+  if (!(x < std::numeric_limits<T>::infinity())) return x;
+  const auto bits = std::bit_cast<Bits>(x);
+  constexpr Bits negative_zero = std::numeric_limits<Bits>::min();
+  return std::bit_cast<T>(bits == negative_zero ? Bits{1} : bits < 0 ? bits - 1 : bits + 1);
 }
-[[nodiscard]] constexpr double rounded_down(double x) { return -rounded_up(-x); }
+template <class T>
+[[nodiscard]] constexpr T rounded_down(T x) {
+  return -rounded_up(-x);
+}
 
 /// The least number of single precision that is not below x.
-[[nodiscard]] inline float float_up(double x) {
+[[nodiscard]] constexpr float float_up(double x) {
   const auto f = static_cast<float>(x);
-  return static_cast<double>(f) >= x ? f : std::nextafterf(f, INFINITY);
+  return static_cast<double>(f) >= x ? f : rounded_up(f);
 }
 
 /// Largest distance of two points whose coordinates differ by at most `error` each.
