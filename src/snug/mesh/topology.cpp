@@ -1,6 +1,7 @@
 #include <snug/mesh/topology.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace snug {
@@ -65,6 +66,36 @@ Topology::Topology(std::vector<std::uint32_t> face_offsets, std::vector<VertexId
   find_fans();
 }
 
+// Walks of many vertices at once: each of their steps waits for memory.
+std::vector<VertexId> Topology::vertices_of_more_fans() const {
+  constexpr std::size_t at_once = 16;
+  std::array<HalfEdge, at_once> at;
+  std::array<std::uint32_t, at_once> left;
+  std::vector<VertexId> found;
+  for (std::size_t begin = 0; begin < vertex_count(); begin += at_once) {
+    const std::size_t count = std::min(at_once, vertex_count() - begin);
+    std::copy_n(leaving_.begin() + static_cast<std::ptrdiff_t>(begin), count, at.begin());
+    std::copy_n(face_counts_.begin() + static_cast<std::ptrdiff_t>(begin), count, left.begin());
+    // After as many steps as there are faces less one a fan of all of them has not come round.
+    bool going = true;
+    while (going) {
+      going = false;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (left[i] <= 1) continue;
+        const HalfEdge h = ccw(at[i]);
+        at[i] = h;
+        --left[i];
+        if (h == no_half_edge || h == leaving_[begin + i]) {
+          found.emplace_back(begin + i);
+          left[i] = 0;
+        }
+        going = going || left[i] > 1;
+      }
+    }
+  }
+  return found;
+}
+
 void Topology::find_fans() {
   face_counts_.assign(vertex_count(), 0);
   for (HalfEdge h = 0; h < half_edge_count(); ++h) {
@@ -72,13 +103,7 @@ void Topology::find_fans() {
     if (best == no_half_edge || (twins_[h] == no_half_edge && twins_[best] != no_half_edge)) best = h;
     ++face_counts_[from(h).index()];
   }
-  std::vector<VertexId> pinched;
-  for (std::size_t i = 0; i < vertex_count(); ++i) {
-    if (face_counts_[i] == 0) continue;
-    std::uint32_t met = 0;
-    walk_fan(leaving_[i], [&](HalfEdge) { ++met; });
-    if (met != face_counts_[i]) pinched.emplace_back(i);
-  }
+  const std::vector<VertexId> pinched = vertices_of_more_fans();
   if (pinched.empty()) return;
   std::vector<bool> is_pinched(vertex_count(), false), met(half_edge_count(), false);
   for (const VertexId v : pinched) {

@@ -119,6 +119,7 @@ class Topology {
 
  private:
   void find_fans();
+  [[nodiscard]] std::vector<VertexId> vertices_of_more_fans() const;
 
   std::vector<std::uint32_t> face_offsets_{0};
   HalfEdge uniform_size_ = 0;
