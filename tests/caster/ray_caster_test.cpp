@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -54,9 +56,25 @@ std::vector<Ray> rays_around(const Surface& surface, std::size_t count) {
   return rays;
 }
 
+// Two cones base to base: needles around their tips.
+Surface cones(std::uint32_t sides) {
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double a = 2 * std::numbers::pi * i / sides;
+    mesh.points.push_back({std::cos(a), std::sin(a), 0});
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const VertexId at(2 + i), next(2 + (i + 1) % sides);
+    mesh.add_face(std::array{at, next, VertexId(0)});
+    mesh.add_face(std::array{next, at, VertexId(1)});
+  }
+  return Surface(std::move(mesh), {.scheme = Scheme::loop});
+}
+
 TEST(ray_caster, finds_what_is_proved_to_be_hit) {
-  for (const char* name : {"bust.obj", "pawn.obj", "bracket.obj", "ring.obj"}) {
-    const Surface surface = load(model(name));
+  for (const char* name : {"bust.obj", "pawn.obj", "bracket.obj", "ring.obj", "cones"}) {
+    const Surface surface = name == std::string("cones") ? cones(150) : load(model(name));
     const double tolerance = 1e-3 * surface.size();
     const RayCaster caster(surface, tolerance);
     const std::vector<Ray> rays = rays_around(surface, 4000);
@@ -154,6 +172,33 @@ TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
   }
   EXPECT_LE(worst, 0x1p-14);
   EXPECT_GT(worst, 0);
+}
+
+// Flat patches side by side, whose boxes are as flat, from above, from below and aslant: rays at corners, sides and between.
+TEST(ray_caster, leaves_no_gap_between_flat_patches) {
+  constexpr std::uint32_t faces = 20;
+  ControlMesh mesh;
+  for (std::uint32_t i = 0; i < (faces + 1) * (faces + 1); ++i) {
+    mesh.points.push_back({static_cast<double>(i % (faces + 1)), static_cast<double>(i / (faces + 1)), 0});
+  }
+  for (std::uint32_t i = 0; i < faces * faces; ++i) {
+    const std::uint32_t at = i / faces * (faces + 1) + i % faces;
+    mesh.add_face(
+        std::array{VertexId(at), VertexId(at + 1), VertexId(at + faces + 2), VertexId(at + faces + 1)});
+  }
+  const Surface surface(std::move(mesh));
+  const RayCaster caster(surface, 1e-6);
+  for (const Vector3& d : {Vector3{0, 0, -1}, Vector3{0.6, 0.3, 2}, Vector3{-3, 1, -0.1}, Vector3{0, 1, 1}}) {
+    for (int i = 8; i <= 72; ++i) {
+      for (int j = 8; j <= 72; ++j) {
+        const Point3 at{0.25 * i, 0.25 * j, 0};
+        const Ray ray{{at.x - 40 * d.x, at.y - 40 * d.y, -40 * d.z}, d};
+        ASSERT_NEAR(caster.cast(ray).t, 40, 1e-2) << i << ' ' << j << ' ' << d.x;
+        ASSERT_TRUE(caster.blocked(ray)) << i << ' ' << j << ' ' << d.x;
+        ASSERT_FALSE(caster.blocked({ray.origin, d, 40.1, 80})) << i << ' ' << j << ' ' << d.x;
+      }
+    }
+  }
 }
 
 TEST(ray_caster, hits_are_the_same_on_every_instruction_set) {

@@ -2,6 +2,7 @@
 #define HWY_TARGET_INCLUDE "snug/caster/caster_kernels.cpp"
 #include <snug/geometry/vector_code-inl.h>
 
+#include <array>
 #include <cmath>
 
 #include <snug/caster/caster_kernels.h>
@@ -16,8 +17,11 @@ using V = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
 using Vector = Vec3<V>;
 
-// Newton steps from a place. Pieces are nearly flat: errors are squared by each.
+// Newton steps from a place, at most. Pieces are nearly flat: errors are squared by each.
 constexpr unsigned steps = 4;
+// They end where the square of the distance from the ray is this share of what is a hit, or, from the fourth place on, not below this
+// share of the one before: the ray passes by. Earlier, needles still come nearer.
+constexpr float near_enough = 0x1p-6F, hopeful = 0.25F;
 // Of a box seen from a ray: what roundings do to a quotient.
 constexpr float wider = 1 + 16 * 0x1p-24F;
 
@@ -34,67 +38,126 @@ std::uint32_t boxes(const CasterBoxes& boxes, const CasterRay& ray, float grown,
               high = hn::Add(hn::Load(d, boxes.upper[k].data() + at), by);
       const V one = hn::Mul(hn::Sub(low, origin), inverse), two = hn::Mul(hn::Sub(high, origin), inverse);
       begin = hn::Max(begin, hn::Min(one, two));
-      end = hn::Min(end, hn::Mul(hn::Max(one, two), hn::Set(d, wider)));
+      end = hn::Min(end, hn::Max(one, two));
     }
     hn::StoreU(begin, d, enter + at);
-    met |= bits(d, hn::Le(begin, end)) << at;
+    met |= bits(d, hn::Le(begin, hn::Mul(end, hn::Set(d, wider)))) << at;
   }
   return met;
 }
 
-// A quadratic triangle as the ray sees it: across, across, along.
+// A coordinate of a quadratic triangle as a ray sees it: powers of the parameters.
 struct Quadratic {
-  Vector at_0, u, v, uu, uv, vv;
+  V at_0, u, v, uu, uv, vv;
 
-  HWY_INLINE Vector at(V s, V t) const {
-    return add(at_0,
-               add(scaled(s, add(u, add(scaled(s, uu), scaled(t, uv)))), scaled(t, add(v, scaled(t, vv)))));
+  struct Value {
+    V value, du, dv;
+  };
+  [[nodiscard]] HWY_INLINE Value at(V s, V r) const {
+    const V s_uu = hn::Mul(s, uu), r_vv = hn::Mul(r, vv);
+    const V along_u = hn::Add(u, hn::Add(s_uu, hn::Mul(r, uv))), along_v = hn::Add(v, r_vv);
+    return {hn::Add(at_0, hn::Add(hn::Mul(s, along_u), hn::Mul(r, along_v))), hn::Add(along_u, s_uu),
+            hn::Add(hn::Add(along_v, r_vv), hn::Mul(s, uv))};
+  }
+};
+struct Quadratics {
+  Quadratic x, y, z;
+
+  HWY_INLINE explicit Quadratics(const Vector* p)
+      : x(of(p, &Vector::x)), y(of(p, &Vector::y)), z(of(p, &Vector::z)) {}
+
+ private:
+  static HWY_INLINE Quadratic of(const Vector* p, V Vector::*axis) {
+    const auto at = [&](std::size_t k) { return p[k].*axis; };
+    const auto twice = [](V a) { return hn::Add(a, a); };
+    return {at(0),
+            twice(hn::Sub(at(3), at(0))),
+            twice(hn::Sub(at(5), at(0))),
+            hn::Sub(hn::Add(at(0), at(1)), twice(at(3))),
+            twice(hn::Sub(hn::Add(at(0), at(4)), hn::Add(at(3), at(5)))),
+            hn::Sub(hn::Add(at(0), at(2)), twice(at(5)))};
   }
 };
 
-// The determinant of the derivative across the ray: whether the triangle turns away.
-HWY_INLINE V turning(const Quadratic& q, V s, V t) {
-  const V du_x = hn::Add(q.u.x, hn::Add(hn::Mul(hn::Add(s, s), q.uu.x), hn::Mul(t, q.uv.x)));
-  const V du_y = hn::Add(q.u.y, hn::Add(hn::Mul(hn::Add(s, s), q.uu.y), hn::Mul(t, q.uv.y)));
-  const V dv_x = hn::Add(q.v.x, hn::Add(hn::Mul(hn::Add(t, t), q.vv.x), hn::Mul(s, q.uv.x)));
-  const V dv_y = hn::Add(q.v.y, hn::Add(hn::Mul(hn::Add(t, t), q.vv.y), hn::Mul(s, q.uv.y)));
-  return hn::Sub(hn::Mul(du_x, dv_y), hn::Mul(du_y, dv_x));
-}
+// How a ray sees places: moved along it to the plane across its axis that its origin is in: two coordinates there, and how far that
+// was.
+struct View {
+  V direction_x, direction_y;
+  V x, y, inverse;  // the direction over its coordinate on the axis, and 1 over that
+
+  HWY_INLINE View(V along_x, V along_y, V over)
+      : direction_x(along_x),
+        direction_y(along_y),
+        x(hn::Mul(along_x, over)),
+        y(hn::Mul(along_y, over)),
+        inverse(over) {}
+  HWY_INLINE Vector operator()(const Vector& p) const {
+    return {hn::Sub(p.x, hn::Mul(p.z, x)), hn::Sub(p.y, hn::Mul(p.z, y)), hn::Mul(p.z, inverse)};
+  }
+  // Around all that is within a distance, in each of these coordinates: the root of 1 + x^2 is no more than 1 + x^2 / 2.
+  [[nodiscard]] HWY_INLINE Vector around(V distance) const {
+    const Tag d;
+    const V one = hn::Set(d, 1), half = hn::Set(d, 0.5F);
+    return {hn::Mul(distance, hn::Add(one, hn::Mul(half, hn::Mul(x, x)))),
+            hn::Mul(distance, hn::Add(one, hn::Mul(half, hn::Mul(y, y)))),
+            hn::Mul(distance, hn::Abs(inverse))};
+  }
+  // From such a place to the ray's nearest point: along the ray.
+  [[nodiscard]] HWY_INLINE V ahead(V at_x, V at_y) const {
+    return hn::Add(hn::Mul(at_x, direction_x), hn::Mul(at_y, direction_y));
+  }
+};
 
 struct Found {
   V t, s, r;  // along, and the parameters
 };
 
-// From a place by Newton's method, kept on the triangle. Nothing is farther than infinity.
-HWY_INLINE void search(const Quadratic& q, V s, V r, V near_sq, V from, V to, Found& found) {
+// From places by Newton's method, kept on the triangle. Nothing is farther than infinity. A lane rests when it has ended, whatever
+// the others do.
+template <std::size_t count>
+HWY_INLINE void search(const Quadratics& q, const View& view, std::array<V, count> s, std::array<V, count> r,
+                       const std::array<V, count>& near_sq, V from, V to, Found& found) {
   const Tag d;
   const V zero = hn::Zero(d), one = hn::Set(d, 1), half = hn::Set(d, 0.5F), tiny = hn::Set(d, 1e-30F);
-  for (unsigned step = 0; step < steps; ++step) {
-    const Vector value = q.at(s, r);
-    const V du_x = hn::Add(q.u.x, hn::Add(hn::Mul(hn::Add(s, s), q.uu.x), hn::Mul(r, q.uv.x)));
-    const V du_y = hn::Add(q.u.y, hn::Add(hn::Mul(hn::Add(s, s), q.uu.y), hn::Mul(r, q.uv.y)));
-    const V dv_x = hn::Add(q.v.x, hn::Add(hn::Mul(hn::Add(r, r), q.vv.x), hn::Mul(s, q.uv.x)));
-    const V dv_y = hn::Add(q.v.y, hn::Add(hn::Mul(hn::Add(r, r), q.vv.y), hn::Mul(s, q.uv.y)));
-    const V turn = hn::Sub(hn::Mul(du_x, dv_y), hn::Mul(du_y, dv_x));
-    const V safe = hn::IfThenElse(hn::Gt(hn::Abs(turn), tiny), turn, tiny);
-    s = hn::Sub(s, hn::Div(hn::Sub(hn::Mul(dv_y, value.x), hn::Mul(dv_x, value.y)), safe));
-    r = hn::Sub(r, hn::Div(hn::Sub(hn::Mul(du_x, value.y), hn::Mul(du_y, value.x)), safe));
-    s = hn::Min(hn::Max(s, hn::Set(d, -1)), hn::Set(d, 2));
-    r = hn::Min(hn::Max(r, hn::Set(d, -1)), hn::Set(d, 2));
-    // The nearest place of the triangle, by its far edge and then by the others.
-    const V excess = hn::Max(zero, hn::Mul(half, hn::Sub(hn::Add(s, r), one)));
-    s = hn::Sub(s, excess);
-    r = hn::Sub(r, excess);
-    s = hn::Min(hn::Max(s, zero), one);
-    r = hn::Max(zero, hn::Min(r, hn::Sub(one, s)));
+  std::array<V, count> ahead, away, last;
+  for (unsigned step = 0;; ++step) {
+    std::array<Quadratic::Value, count> x, y;
+    std::array<Mask, count> moves;
+    auto any = hn::Lt(one, zero);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = q.x.at(s[i], r[i]);
+      y[i] = q.y.at(s[i], r[i]);
+      ahead[i] = view.ahead(x[i].value, y[i].value);
+      away[i] = hn::Sub(hn::Add(hn::Mul(x[i].value, x[i].value), hn::Mul(y[i].value, y[i].value)),
+                        hn::Mul(ahead[i], ahead[i]));
+      moves[i] =
+          hn::And(hn::Gt(away[i], hn::Mul(hn::Set(d, near_enough), near_sq[i])), hn::Gt(near_sq[i], zero));
+      if (step > 2) moves[i] = hn::And(moves[i], hn::Lt(away[i], hn::Mul(hn::Set(d, hopeful), last[i])));
+      last[i] = away[i];
+      any = hn::Or(any, moves[i]);
+    }
+    if (step == steps || bits(d, any) == 0) break;
+    for (std::size_t i = 0; i < count; ++i) {
+      const V turn = hn::Sub(hn::Mul(x[i].du, y[i].dv), hn::Mul(y[i].du, x[i].dv));
+      const V safe = hn::IfThenElse(hn::Gt(hn::Abs(turn), tiny), turn, tiny);
+      const V u =
+          hn::Sub(s[i], hn::Div(hn::Sub(hn::Mul(y[i].dv, x[i].value), hn::Mul(x[i].dv, y[i].value)), safe));
+      const V v =
+          hn::Sub(r[i], hn::Div(hn::Sub(hn::Mul(x[i].du, y[i].value), hn::Mul(y[i].du, x[i].value)), safe));
+      // The nearest place of the triangle, by its far edge and then by the others.
+      const V off = hn::Mul(half, hn::Sub(u, v));
+      s[i] = hn::IfThenElse(moves[i], hn::Min(hn::Max(hn::Min(u, hn::Add(half, off)), zero), one), s[i]);
+      r[i] = hn::IfThenElse(moves[i], hn::Min(hn::Max(hn::Min(v, hn::Sub(half, off)), zero), one), r[i]);
+    }
   }
-  const Vector value = q.at(s, r);
-  const V away = hn::Add(hn::Mul(value.x, value.x), hn::Mul(value.y, value.y));
-  const auto met = hn::And(hn::And(hn::Le(away, near_sq), hn::Ge(value.z, from)),
-                           hn::And(hn::Le(value.z, to), hn::Lt(value.z, found.t)));
-  found.t = hn::IfThenElse(met, value.z, found.t);
-  found.s = hn::IfThenElse(met, s, found.s);
-  found.r = hn::IfThenElse(met, r, found.r);
+  for (std::size_t i = 0; i < count; ++i) {
+    const V along = hn::Add(q.z.at(s[i], r[i]).value, ahead[i]);
+    const auto met = hn::And(hn::And(hn::Le(away[i], near_sq[i]), hn::Ge(along, from)),
+                             hn::And(hn::Le(along, to), hn::Lt(along, found.t)));
+    found.t = hn::IfThenElse(met, along, found.t);
+    found.s = hn::IfThenElse(met, s[i], found.s);
+    found.r = hn::IfThenElse(met, hn::Min(r[i], hn::Sub(one, s[i])), found.r);
+  }
 }
 
 // Bezier points of a triangle as a ray sees them, and whether that is near their box.
@@ -102,27 +165,25 @@ struct Seen {
   Vector p[6];
   Vector low, high;
 
-  // `point(k)`: relative to the ray's origin; `turn(v)`: across, across, along.
-  template <class Point, class Turn>
-  HWY_INLINE Seen(const Point& point, const Turn& turn) {
+  // `point(k)`: relative to the ray's origin.
+  template <class Point>
+  HWY_INLINE Seen(const View& view, const Point& point) {
     const Tag d;
     low.x = low.y = low.z = hn::Set(d, INFINITY);
     high.x = high.y = high.z = hn::Set(d, -INFINITY);
     for (std::size_t k = 0; k < 6; ++k) {
-      p[k] = turn(point(k));
+      p[k] = view(point(k));
       low = {hn::Min(low.x, p[k].x), hn::Min(low.y, p[k].y), hn::Min(low.z, p[k].z)};
       high = {hn::Max(high.x, p[k].x), hn::Max(high.y, p[k].y), hn::Max(high.z, p[k].z)};
     }
   }
-  [[nodiscard]] HWY_INLINE Mask within(V near) const {
-    const V other = hn::Neg(near);
-    return hn::And(hn::And(hn::Le(low.x, near), hn::Ge(high.x, other)),
-                   hn::And(hn::Le(low.y, near), hn::Ge(high.y, other)));
+  [[nodiscard]] HWY_INLINE Mask within(const Vector& near) const {
+    return hn::And(hn::And(hn::Le(low.x, near.x), hn::Ge(high.x, hn::Neg(near.x))),
+                   hn::And(hn::Le(low.y, near.y), hn::Ge(high.y, hn::Neg(near.y))));
   }
-  // The same, and between two places along the ray.
-  [[nodiscard]] HWY_INLINE Mask within(V near, V from, V to) const {
-    return hn::And(within(near),
-                   hn::And(hn::Ge(hn::Add(high.z, near), from), hn::Le(hn::Sub(low.z, near), to)));
+  // Between two places along the ray.
+  [[nodiscard]] HWY_INLINE Mask between(const Vector& near, V from, V to) const {
+    return hn::And(hn::Ge(hn::Add(high.z, near.z), from), hn::Le(hn::Sub(low.z, near.z), to));
   }
 };
 
@@ -130,7 +191,7 @@ HWY_INLINE V sum_of(const Vector& v) { return hn::Add(hn::Add(hn::Abs(v.x), hn::
 
 // Whether a part of a ray comes as near to the plane of a triangle's corners as its quadratic bends away from it: what begins above
 // a surface and leaves it does not, though it is within the box.
-HWY_INLINE Mask reaches_plane(const Seen& seen, V near, V from, V to) {
+HWY_INLINE Mask reaches_plane(const Seen& seen, const Vector& near, V from, V to) {
   const Tag d;
   const Vector* const p = seen.p;
   const Vector a = sub(p[1], p[0]), b = sub(p[2], p[0]), normal = cross(a, b);
@@ -140,21 +201,24 @@ HWY_INLINE Mask reaches_plane(const Seen& seen, V near, V from, V to) {
     low = hn::Min(low, height);
     high = hn::Max(high, height);
   }
+  // Their weights are two thirds together, at most.
+  const V weight = hn::Set(d, 2.0F / 3);
   const V own = dot(normal, p[0]);
   const V first = hn::Sub(hn::Mul(normal.z, from), own), last = hn::Sub(hn::Mul(normal.z, to), own);
   // A needle's normal is as rounded as its sides are long.
   const V rounding = hn::Mul(hn::Mul(hn::Mul(hn::Set(d, 0x1p-20F), sum_of(a)), sum_of(b)),
                              hn::Add(sum_of(p[0]), hn::Add(hn::Abs(from), hn::Abs(to))));
-  const V least = hn::Add(hn::Add(hn::Mul(sum_of(normal), near), rounding), hn::Set(d, 1e-30F));
-  return hn::Not(hn::Or(hn::Gt(hn::Sub(hn::Min(first, last), high), least),
-                        hn::Gt(hn::Sub(low, hn::Max(first, last)), least)));
+  const Vector grown{hn::Mul(normal.x, near.x), hn::Mul(normal.y, near.y), hn::Mul(normal.z, near.z)};
+  const V least = hn::Add(hn::Add(sum_of(grown), rounding), hn::Set(d, 1e-30F));
+  return hn::Not(hn::Or(hn::Gt(hn::Sub(hn::Min(first, last), hn::Mul(weight, high)), least),
+                        hn::Gt(hn::Sub(hn::Mul(weight, low), hn::Max(first, last)), least)));
 }
 
 // Whether it passes between the lines along the triangle's sides, as it sees them, that its Bezier points lie between.
-HWY_INLINE Mask passes_between_sides(const Seen& seen, V near) {
+HWY_INLINE Mask passes_between_sides(const Seen& seen, const Vector& near) {
   const Tag d;
   const Vector* const p = seen.p;
-  auto outside = hn::Lt(near, hn::Zero(d));
+  auto outside = hn::Lt(near.x, hn::Zero(d));
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const V x = hn::Sub(p[next].y, p[k].y), y = hn::Sub(p[k].x, p[next].x);
@@ -165,64 +229,64 @@ HWY_INLINE Mask passes_between_sides(const Seen& seen, V near) {
       low = hn::Min(low, other);
       high = hn::Max(high, other);
     }
-    const V least = hn::Add(hn::Mul(hn::Add(hn::Abs(x), hn::Abs(y)), near), hn::Set(d, 1e-30F));
+    const V least =
+        hn::Add(hn::Add(hn::Mul(hn::Abs(x), near.x), hn::Mul(hn::Abs(y), near.y)), hn::Set(d, 1e-30F));
     outside = hn::Or(outside, hn::Gt(hn::Max(low, hn::Neg(high)), least));
   }
   return hn::Not(outside);
 }
 
-HWY_INLINE Seen seen_block(const CasterBlock& block, const CasterRay& ray, std::size_t at) {
+HWY_INLINE View view_of(const CasterRay& ray) {
+  const Tag d;
+  return {hn::Set(d, ray.direction[(ray.axis + 1) % 3]), hn::Set(d, ray.direction[(ray.axis + 2) % 3]),
+          hn::Set(d, ray.inverse[ray.axis])};
+}
+// Triangles of a block, the first of which is `at`, as a ray sees them, in steps of the block.
+HWY_INLINE Seen seen_block(const CasterBlock& block, const CasterRay& ray, const View& view, std::size_t at) {
   const Tag d;
   const auto point = [&](std::size_t k) {
-    const auto row = [&](std::size_t axis) {
+    const auto coordinate = [&](std::size_t axis) {
       const hn::Rebind<std::int16_t, Tag> narrow;
       const hn::Rebind<std::int32_t, Tag> whole;
       const V number =
           hn::ConvertTo(d, hn::PromoteTo(whole, hn::LoadU(narrow, block.net[k][axis].data() + at)));
-      return hn::Add(hn::Mul(number, hn::Set(d, block.step)),
-                     hn::Set(d, block.origin[axis] - ray.origin[axis]));
+      return hn::Add(number, hn::Set(d, (block.origin[axis] - ray.origin[axis]) * block.inverse_step));
     };
-    return Vector{row(0), row(1), row(2)};
+    return Vector{coordinate((ray.axis + 1) % 3), coordinate((ray.axis + 2) % 3), coordinate(ray.axis)};
   };
-  const auto turn = [&](const Vector& v) {
-    const auto along = [&](const std::array<float, 3>& w) {
-      return dot(v, Vector{hn::Set(d, w[0]), hn::Set(d, w[1]), hn::Set(d, w[2])});
-    };
-    return Vector{along(ray.across[0]), along(ray.across[1]), along(ray.direction)};
-  };
-  return Seen(point, turn);
+  return Seen(view, point);
 }
 
 // The first places where rays are within `near` of triangles, if they are candidates.
-HWY_INLINE Found first_hits(const Seen& seen, Mask candidates, V near, V from, V to) {
+HWY_INLINE Found first_hits(const Seen& seen, const View& view, Mask candidates, V near, V from, V to) {
   const Tag d;
   const Vector* const p = seen.p;
-  const auto doubled = [&](const Vector& x) { return add(x, x); };
-  const Quadratic q{p[0],
-                    doubled(sub(p[3], p[0])),
-                    doubled(sub(p[5], p[0])),
-                    sub(add(p[0], p[1]), doubled(p[3])),
-                    doubled(sub(add(p[0], p[4]), add(p[3], p[5]))),
-                    sub(add(p[0], p[2]), doubled(p[5]))};
+  const Quadratics q(p);
   const V none = hn::IfThenElse(candidates, hn::Mul(near, near), hn::Set(d, -1));
-  const V zero = hn::Zero(d), one = hn::Set(d, 1), third = hn::Set(d, 1.0F / 3), half = hn::Set(d, 0.5F);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1), third = hn::Set(d, 1.0F / 3);
   Found found{hn::Set(d, INFINITY), zero, zero};
-  search(q, third, third, none, from, to, found);
-  // A triangle that turns away somewhere may be met twice.
-  const V turns[6] = {turning(q, zero, zero), turning(q, one, zero),  turning(q, zero, one),
-                      turning(q, half, zero), turning(q, half, half), turning(q, zero, half)};
-  V least = turns[0], most = turns[0];
-  for (std::size_t k = 1; k < 6; ++k) {
-    least = hn::Min(least, turns[k]);
-    most = hn::Max(most, turns[k]);
+  // A triangle that turns away somewhere, at a corner or the middle of an edge, may be met twice.
+  const auto turning = [&](const Vector& x, const Vector& y) {
+    return hn::Sub(hn::Mul(x.x, y.y), hn::Mul(x.y, y.x));
+  };
+  const Vector du[3] = {sub(p[3], p[0]), sub(p[1], p[3]), sub(p[4], p[5])},
+               dv[3] = {sub(p[5], p[0]), sub(p[4], p[3]), sub(p[2], p[5])};
+  V least = hn::Set(d, INFINITY), most = hn::Set(d, -INFINITY);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    for (const V turn : {turning(du[k], dv[k]), turning(add(du[k], du[next]), add(dv[k], dv[next]))}) {
+      least = hn::Min(least, turn);
+      most = hn::Max(most, turn);
+    }
   }
   const auto turns_away = hn::And(candidates, hn::And(hn::Le(least, zero), hn::Ge(most, zero)));
-  if (bits(d, turns_away) != 0) {
+  if (bits(d, turns_away) == 0) {
+    search<1>(q, view, {third}, {third}, {none}, from, to, found);
+  } else {
     // No other lane, so that it makes no difference which ones a vector has.
     const V of_these = hn::IfThenElse(turns_away, none, hn::Set(d, -1));
-    search(q, zero, zero, of_these, from, to, found);
-    search(q, one, zero, of_these, from, to, found);
-    search(q, zero, one, of_these, from, to, found);
+    search<4>(q, view, {third, zero, one, zero}, {third, zero, zero, one},
+              {none, of_these, of_these, of_these}, from, to, found);
   }
   return found;
 }
@@ -230,9 +294,10 @@ HWY_INLINE Found first_hits(const Seen& seen, Mask candidates, V near, V from, V
 std::uint32_t near_pieces(const CasterBlock& block, const CasterRay& ray, float grown) {
   const Tag d;
   std::uint32_t result = 0;
+  const View view = view_of(ray);
+  const Vector near = view.around(hn::Set(d, (block.error + ray.rounding + grown) * block.inverse_step));
   for (std::size_t at = 0; at < caster_width; at += hn::Lanes(d)) {
-    const V near = hn::Set(d, block.error + ray.rounding + grown);
-    result |= bits(d, seen_block(block, ray, at).within(near)) << at;
+    result |= bits(d, seen_block(block, ray, view, at).within(near)) << at;
   }
   return result & block.taken;
 }
@@ -243,22 +308,25 @@ HWY_INLINE CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, f
   const Tag d;
   CasterHit hit;
   hit.t = to;
+  const View view = view_of(ray);
+  const V distance = hn::Set(d, (block.error + ray.rounding) * block.inverse_step);
+  const Vector near = view.around(distance);
   for (std::size_t at = 0; at < caster_width; at += hn::Lanes(d)) {
-    const Seen seen = seen_block(block, ray, at);
-    const V near = hn::Set(d, block.error + ray.rounding);
-    auto candidates = seen.within(near, hn::Set(d, from), hn::Set(d, hit.t));
+    const Seen seen = seen_block(block, ray, view, at);
+    const V first = hn::Set(d, from * block.inverse_step), last = hn::Set(d, hit.t * block.inverse_step);
+    auto candidates = seen.within(near);
     std::uint32_t taken = bits(d, candidates) & block.taken >> at;
     if (taken == 0) continue;
+    candidates = hn::And(candidates, seen.between(near, first, last));
     // Most triangles that a shadow's ray is near to are those that it begins on.
-    if constexpr (query == CasterQuery::any) {
-      candidates = hn::And(candidates, reaches_plane(seen, near, hn::Set(d, from), hn::Set(d, hit.t)));
-      if ((taken &= bits(d, candidates)) == 0) continue;
-    }
+    if constexpr (query == CasterQuery::any)
+      candidates = hn::And(candidates, reaches_plane(seen, near, first, last));
+    if ((taken &= bits(d, candidates)) == 0) continue;
     candidates = hn::And(candidates, passes_between_sides(seen, near));
     if ((taken &= bits(d, candidates)) == 0) continue;
-    const Found found = first_hits(seen, candidates, near, hn::Set(d, from), hn::Set(d, hit.t));
+    const Found found = first_hits(seen, view, candidates, distance, first, last);
     HWY_ALIGN float t[caster_width], s[caster_width], r[caster_width];
-    hn::Store(found.t, d, t);
+    hn::Store(hn::Mul(found.t, hn::Set(d, block.step)), d, t);
     hn::Store(found.s, d, s);
     hn::Store(found.r, d, r);
     for (std::size_t l = 0; l < hn::Lanes(d); ++l) {
@@ -281,8 +349,8 @@ HWY_INLINE CasterHit walk_for(const CasterNode* nodes, const CasterBlock* blocks
     if (top.enter > best.t) continue;
     if ((top.name & caster_leaf_bit) == 0) {
       const CasterNode& node = nodes[top.name];
-      float enter[caster_width];
-      const std::uint32_t met = boxes(node.boxes, ray, 0, from, best.t, enter) & node.taken;
+      HWY_ALIGN float enter[caster_width];
+      const std::uint32_t met = boxes(node.boxes, ray, 0, from, best.t, enter);
       // Shadow rays begin beside the surface that they leave, and are blocked farther on.
       constexpr auto order =
           query == CasterQuery::any ? OpenNodes::Order::farthest_first : OpenNodes::Order::nearest_first;
@@ -309,29 +377,30 @@ std::uint32_t piece(const CasterBlock& block, std::size_t place, const CasterRay
                     const float* from, float* to, float* u, float* v) {
   const Tag d;
   std::uint32_t met = 0;
-  const V near = hn::Set(d, block.error + rounding);
+  const V distance = hn::Set(d, block.error + rounding);
   for (std::size_t at = 0; at < caster_width; at += hn::Lanes(d)) {
     const auto rows = [&](const std::array<std::array<float, caster_width>, 3>& w) {
       return Vector{hn::Load(d, w[0].data() + at), hn::Load(d, w[1].data() + at),
                     hn::Load(d, w[2].data() + at)};
     };
-    const Vector origin = rows(rays.origin);
+    const Vector origin = rows(rays.origin), direction = rows(rays.direction);
     const auto point = [&](std::size_t k) {
       const auto coordinate = [&](std::size_t axis) {
         return hn::Set(d, block.origin[axis] + block.step * static_cast<float>(block.net[k][axis][place]));
       };
-      return sub(Vector{coordinate(0), coordinate(1), coordinate(2)}, origin);
+      return sub(
+          Vector{coordinate((rays.axis + 1) % 3), coordinate((rays.axis + 2) % 3), coordinate(rays.axis)},
+          origin);
     };
-    const auto turn = [&](const Vector& w) {
-      return Vector{dot(w, rows(rays.across[0])), dot(w, rows(rays.across[1])), dot(w, rows(rays.direction))};
-    };
-    const Seen seen(point, turn);
+    const View view(direction.x, direction.y, hn::Load(d, rays.inverse.data() + at));
+    const Vector near = view.around(distance);
+    const Seen seen(view, point);
     const V first = hn::Load(d, from + at), last = hn::Load(d, to + at);
-    auto candidates = seen.within(near, first, last);
+    auto candidates = hn::And(seen.within(near), seen.between(near, first, last));
     if (bits(d, candidates) == 0) continue;
     candidates = hn::And(candidates, passes_between_sides(seen, near));
     if (bits(d, candidates) == 0) continue;
-    const Found found = first_hits(seen, candidates, near, first, last);
+    const Found found = first_hits(seen, view, candidates, distance, first, last);
     const auto nearer = hn::Lt(found.t, hn::Set(d, INFINITY));
     hn::Store(hn::IfThenElse(nearer, found.t, last), d, to + at);
     hn::Store(hn::IfThenElse(nearer, found.s, hn::Load(d, u + at)), d, u + at);

@@ -13,14 +13,15 @@ inline constexpr std::size_t caster_width = 8;
 
 struct CasterRay {
   std::array<float, 3> origin, direction,
-      inverse;  ///< direction of length 1; 1 over its coordinates, none infinite
-  std::array<std::array<float, 3>, 2> across;  ///< of length 1, at right angles with it and each other
-  float rounding;                              ///< error of places across the ray
+      inverse;       ///< direction of length 1; 1 over its coordinates, none infinite
+  float rounding;    ///< error of places across the ray
+  std::size_t axis;  ///< the direction's largest coordinate
 };
-/// Rays close to a first one, coordinate by coordinate.
+/// Rays close to a first one, coordinate by coordinate; its axis comes last, the one after it first.
 struct alignas(32) CasterRays {
   std::array<std::array<float, caster_width>, 3> origin, direction;
-  std::array<std::array<std::array<float, caster_width>, 3>, 2> across;
+  std::array<float, caster_width> inverse;  ///< 1 over the last coordinate of the direction
+  std::size_t axis;
 };
 
 /// Axis-aligned boxes.
@@ -34,21 +35,30 @@ std::uint32_t enter_boxes(const CasterBoxes& boxes, const CasterRay& ray, float 
 
 /// Quadratic triangles near each other: their Bezier points, coordinate by coordinate, are origin + step net; corners,
 /// then middles of the edges 01, 12, 20.
-struct CasterBlock {
+struct alignas(64) CasterBlock {
   std::array<std::array<std::array<std::int16_t, caster_width>, 3>, 6> net;
   std::array<float, 3> origin;
-  float step;
+  float step, inverse_step;
   float error;          ///< how far any may be off
   std::uint32_t taken;  ///< a bit each
 };
 /// A bit for each triangle that is within the error and `grown` of the ray.
 std::uint32_t near_ray(const CasterBlock& block, const CasterRay& ray, float grown);
 
-/// A node of a tree: children are other nodes, or blocks with caster_leaf_bit; a bit for each that there is.
-struct CasterNode {
+/// A node of a tree: children are other nodes, or blocks with caster_leaf_bit.
+struct alignas(64) CasterNode {
   CasterBoxes boxes;
   std::array<std::uint32_t, caster_width> children;
-  std::uint32_t taken;
+
+  /// Without children: rays end before their boxes.
+  static CasterNode empty() {
+    CasterNode node{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.boxes.lower[k].fill(1e30F);
+      node.boxes.upper[k].fill(1e30F);
+    }
+    return node;
+  }
 };
 inline constexpr std::uint32_t caster_leaf_bit = 0x80000000u;
 

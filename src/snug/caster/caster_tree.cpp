@@ -28,12 +28,20 @@ constexpr double widest_beam = 0.1;
 // Where single precision alone, of coordinates up to about 2, moves a triangle.
 constexpr double single_error = 0x1p-21;
 
+// Around the Bezier points of its quarters, which are closer to it than its own.
 Box3 box_of(const QuadraticTriangle& q) {
   Box3 box;
-  for (const Point3& p : points_of(q)) box.add(p);
-  const double wider = 2 * q.error + single_error;
-  const Vector3 by{wider, wider, wider};
-  return {box.lower - by, box.upper + by};
+  const auto between = [](const Point3& a, const Point3& b) { return a + 0.5 * (b - a); };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+    const Point3 &middle = q.middles[k], before = between(q.corners[k], middle),
+                 behind = between(middle, q.corners[next]);
+    for (const Point3& p : {q.corners[k], before, behind, between(before, behind),
+                            between(before, between(q.middles[last], q.middles[next]))}) {
+      box.add(p);
+    }
+  }
+  return box;
 }
 
 Box3 merged(const Box3& a, const Box3& b) {
@@ -123,15 +131,11 @@ struct CasterTree::Builder {
     divide(begin, end, caster_width, unit, ends);
     name = static_cast<std::uint32_t>(tree.nodes_.size());
     tree.nodes_.emplace_back();
-    kernels::CasterNode node{};
+    kernels::CasterNode node = kernels::CasterNode::empty();
     Box3 all;
-    for (std::size_t i = 0; i < caster_width; ++i) {
-      Box3 box;
-      if (i < ends.size()) {
-        box = fill(i == 0 ? begin : ends[i - 1], ends[i], node.children[i]);
-        all = merged(all, box);
-        node.taken |= 1u << i;
-      }
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const Box3 box = fill(i == 0 ? begin : ends[i - 1], ends[i], node.children[i]);
+      all = merged(all, box);
       for (std::size_t k = 0; k < 3; ++k) {
         node.boxes.lower[k][i] = static_cast<float>(box.lower[k]);
         node.boxes.upper[k][i] = static_cast<float>(box.upper[k]);
@@ -158,7 +162,8 @@ struct CasterTree::Builder {
     for (std::size_t k = 0; k < 3; ++k) {
       block.origin[k] = static_cast<float>(points.lower[k] + (points.upper[k] - points.lower[k]) / 2);
     }
-    block.step = static_cast<float>(longest_side(points) / 2 / 32766 + 1e-30);
+    block.step = static_cast<float>(longest_side(points) / 2 / 32766 + 1e-9);
+    block.inverse_step = 1 / block.step;
     block.error = static_cast<float>(widening * error + static_cast<double>(block.step) + single_error);
     block.taken = (1u << (end - begin)) - 1;
     for (std::size_t l = 0; l < caster_width; ++l) {
@@ -175,7 +180,9 @@ struct CasterTree::Builder {
       tree.places_.add(pieces.name(piece));
     }
     tree.blocks_.push_back(block);
-    return all;
+    const double by = static_cast<double>(block.error + tree.rounding_) + single_error;
+    const Vector3 grown{by, by, by};
+    return {all.lower - grown, all.upper + grown};
   }
 };
 
@@ -192,24 +199,19 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
     all.add(builder.boxes.back());
   }
   centre_ = all.lower + 0.5 * (all.upper - all.lower);
-  radius_ = length(all.upper - centre_);
+  radius_ = length(all.upper - centre_) + tolerance;
   rounding_ = static_cast<float>(single_error * (1 + radius_));
   std::uint32_t name = 0;
   // A root of one block is a node with one child.
   if (pieces.size() <= caster_width) {
     nodes_.emplace_back();
-    kernels::CasterNode node{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      node.boxes.lower[k].fill(INFINITY);
-      node.boxes.upper[k].fill(-INFINITY);
-    }
+    kernels::CasterNode node = kernels::CasterNode::empty();
     const Box3 box = builder.fill_block(0, pieces.size(), name);
     for (std::size_t k = 0; k < 3; ++k) {
       node.boxes.lower[k][0] = static_cast<float>(box.lower[k]);
       node.boxes.upper[k][0] = static_cast<float>(box.upper[k]);
     }
     node.children[0] = name;
-    node.taken = 1;
     nodes_[0] = node;
   } else {
     static_cast<void>(builder.fill(0, pieces.size(), name));
@@ -226,6 +228,13 @@ std::size_t CasterTree::bytes() const {
 
 // A ray from where it comes near, so that single precision will do.
 struct CasterTree::Approach {
+  // Does the ray's line pass by the ball around everything? Most rays of a picture do, which need no root then.
+  static bool passes_ball(const CasterTree& tree, const Ray& ray) {
+    const Vector3 ahead = tree.centre_ - tree.surface_->scale().apply(ray.origin);
+    const double along = dot(ray.direction, ahead);
+    return (length_sq(ahead) - 1.001 * tree.radius_ * tree.radius_) * length_sq(ray.direction) >
+           along * along;
+  }
   Approach(const CasterTree& tree, const Ray& ray)
       : lengths(ray.direction, tree.surface_->scale()), direction(lengths.unit(ray.direction)) {
     const Point3 origin = tree.surface_->scale().apply(ray.origin);
@@ -234,40 +243,30 @@ struct CasterTree::Approach {
     // Forwards or backwards.
     skipped = std::max(lengths.to_scaled(ray.from), middle - tree.radius_);
     start = origin + skipped * direction;
-    from = static_cast<float>(std::max(lengths.to_scaled(ray.from) - skipped, -1e30));
+    from = static_cast<float>(std::max(lengths.to_scaled(ray.from) - skipped, -tree.radius_));
     to = static_cast<float>(std::min(lengths.to_scaled(ray.to) - skipped, 2.01 * tree.radius_));
-    passes = !(to >= from) || length_sq(ahead) - middle * middle > 1.001 * tree.radius_ * tree.radius_;
+    passes = !(to >= from);
   }
   RayScale lengths;
   Vector3 direction;
   double skipped;
   Point3 start;
   float from, to;
-  bool passes;  // by everything
+  bool passes;  // before it or behind it
 };
-
-namespace {
-
-// Two directions across a ray.
-// Source:    [Duff17].
-std::array<Vector3, 2> across(const Vector3& d) {
-  const double sign = std::copysign(1.0, d.z), a = -1 / (sign + d.z), b = d.x * d.y * a;
-  return {Vector3{1 + sign * d.x * d.x * a, sign * b, -sign * d.x}, Vector3{b, sign + d.y * d.y * a, -d.y}};
-}
-
-}  // namespace
 
 kernels::CasterRay CasterTree::seen(const Approach& approach) const {
   kernels::CasterRay ray{};
-  const std::array<Vector3, 2> sides = across(approach.direction);
   for (std::size_t k = 0; k < 3; ++k) {
-    const double d = approach.direction[k];
+    const auto d = static_cast<float>(approach.direction[k]);
     ray.origin[k] = static_cast<float>(approach.start[k]);
-    ray.direction[k] = static_cast<float>(d);
-    ray.inverse[k] = static_cast<float>(1 / (std::fabs(d) > 1e-20 ? d : std::copysign(1e-20, d)));
-    for (std::size_t a = 0; a < 2; ++a) ray.across[a][k] = static_cast<float>(sides[a][k]);
+    ray.direction[k] = d;
+    ray.inverse[k] = 1 / (std::fabs(d) > 1e-20F ? d : std::copysign(1e-20F, d));
   }
   ray.rounding = rounding_;
+  const std::array<float, 3>& d = ray.direction;
+  const float x = std::fabs(d[0]), y = std::fabs(d[1]), z = std::fabs(d[2]);
+  ray.axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
   return ray;
 }
 
@@ -288,7 +287,7 @@ void CasterTree::walk(const kernels::CasterRay& ray, float grown, float first, f
     const kernels::CasterNode& node = nodes_[top.name];
     std::array<float, caster_width> enter;
     const std::uint32_t met = kernels::enter_boxes(node.boxes, ray, grown, first, last, enter.data());
-    open.add(node.children, met & node.taken, enter);
+    open.add(node.children, met, enter);
   }
 }
 
@@ -298,15 +297,16 @@ struct CasterTree::Beam {
       : tree(in), middle(in.seen(group[group.size() / 2])), count(group.size()) {
     for (std::size_t i = 0; i < caster_width; ++i) {
       const Approach& ray = group[std::min(i, count - 1)];
-      const std::array<Vector3, 2> sides = across(ray.direction);
       for (std::size_t k = 0; k < 3; ++k) {
-        rays.origin[k][i] = static_cast<float>(ray.start[k]);
-        rays.direction[k][i] = static_cast<float>(ray.direction[k]);
-        for (std::size_t a = 0; a < 2; ++a) rays.across[a][k][i] = static_cast<float>(sides[a][k]);
+        const std::size_t axis = (middle.axis + 1 + k) % 3;
+        rays.origin[k][i] = static_cast<float>(ray.start[axis]);
+        rays.direction[k][i] = static_cast<float>(ray.direction[axis]);
       }
+      rays.inverse[i] = 1 / rays.direction[2][i];
       from[i] = ray.from;
       to[i] = ray.to;
     }
+    rays.axis = middle.axis;
     first = *std::min_element(from.begin(), from.end());
     grown = static_cast<float>(apart + 2 * tree.radius_ * spreading) + tree.rounding_;
   }
@@ -339,6 +339,7 @@ struct CasterTree::Beam {
 };
 
 QuickHit CasterTree::cast(const Ray& ray) const {
+  if (Approach::passes_ball(*this, ray)) return {};
   const Approach approach(*this, ray);
   return approach.passes ? QuickHit{} : nearest(approach);
 }
@@ -364,6 +365,7 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const 
     group.clear();
     for (std::size_t i = begin; i < std::min(begin + caster_width, rays.size()); ++i) {
       out[i] = {};
+      if (Approach::passes_ball(*this, rays[i])) continue;
       const Approach approach(*this, rays[i]);
       if (approach.passes) continue;
       which[group.size()] = i;
