@@ -150,6 +150,20 @@ TEST(hulls, of_poles_of_any_valence_sandwich_them) {
   outcomes.print("poles");
 }
 
+// Each of the narrow faces has a ripple: facets that follow these turn over, and four times as many are needed, unless their vertices
+// go the way that the surface faces on the whole.
+TEST(hulls, of_poles_with_ripples_take_few_triangles) {
+  const TaggedMesh mesh = bipyramid(90);
+  const oracle::Rules rules{.scheme = oracle::PrimalScheme::loop};
+  const Surface surface = testing::public_surface(testing::control_mesh(mesh), testing::options_of(rules));
+  const double error = 0.01 * surface.size();
+  const Hulls found = hull(surface, {.error = error, .outer = false});
+  ASSERT_EQ(found.outcome, Outcome::complete);
+  EXPECT_LE(found.inner->triangles.size(), 20'000u);
+  HullCounts counts;
+  testing::expect_sandwich(mesh, rules, found, error, 2, "ripples", counts);
+}
+
 // Faces much narrower than the tolerance: facets that are moved as far turn over, and the proof that they are off the
 // surface splits more pieces than a query usually may.
 TEST(hulls, of_poles_of_many_narrow_faces_sandwich_them) {

@@ -61,6 +61,10 @@ constexpr double first_share = 0.4, min_share = 0x1p-6, min_share_apart = 0x1p-8
 constexpr double turned_share = 0x1p-3;
 // How much longer than the shortest a displacement may be that goes the way the surface faces.
 constexpr double longest_detour = 1.25;
+// Vertices of facets that turn over: means over neighbours of the way they go, of the error that is left there how far they may go, and how
+// often they are looked for.
+constexpr int smoothing_passes = 4, max_steered = 4;
+constexpr double room_share = 0.95;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
 // of the quadratics that it is to be kept off.
 constexpr double clearance = 0.1, quadratic_share = 0x1p-4;
@@ -394,7 +398,7 @@ class OneHull {
         faces_.border = has_border(mesh_);
         faces_.inward = !faces_.border && is_inward(mesh_, scale_);
       }
-      move_vertices(made.errors);
+      move_vertices(std::move(made.errors));
       if (!whole_mesh() && !problems_.empty()) break;
       if (!facets_.any_turned && !keep_off() && !blame_budget()) break;
       if (problems_.empty()) break;
@@ -462,7 +466,7 @@ class OneHull {
   struct Facets {
     std::vector<Point3> positions{};
     double gap = 0;
-    bool any_turned = false;  // does one lie the other way round than its triangle?
+    bool any_turned = false;
   };
 
   [[nodiscard]] Triangle scaled(const std::vector<Point3>& points, const Names& t) const {
@@ -510,22 +514,65 @@ class OneHull {
     return require_representable(p);
   }
 
-  // Each vertex about as near as possible to where it was, beyond the planes of the triangles around it; `normals` and
-  // `offsets` are those of the planes, `areas` the triangles' area vectors. The way that all of these together face goes before
-  // the shortest one: beside a narrow triangle, whose normal may be anything, that leads past the next vertex. Nothing if there is no such place.
-  [[nodiscard]] static std::optional<Vector3> displacement(std::span<const std::uint32_t> around,
-                                                           std::span<const Vector3> areas,
-                                                           std::span<const Vector3> normals,
-                                                           std::span<const double> offsets) {
-    std::vector<Vector3> planes;
-    double largest = 0;
-    Vector3 facing;
-    for (const std::uint32_t t : around) {
-      largest = std::max(largest, offsets[t]);
-      facing = facing + areas[t];
+  // The planes of triangles that their vertices are moved beyond.
+  struct Planes {
+    std::vector<Vector3> areas, normals;  // outward; area vectors, scaled, and of length 1
+    std::vector<double> errors, offsets;  // of the surface, and how far beyond
+  };
+  [[nodiscard]] Planes planes_of(std::vector<double> errors) const {
+    const std::size_t count = mesh_.triangles.size();
+    const double float_loss = this->float_loss();
+    Planes planes{std::vector<Vector3>(count), std::vector<Vector3>(count), std::move(errors),
+                  std::vector<double>(count)};
+    parallel_for(count, run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const Triangle triangle = scaled(mesh_.positions, mesh_.triangles[t]);
+        planes.areas[t] = sign() * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+        planes.normals[t] = sign() * unit_normal(triangle);
+        planes.offsets[t] = planes.errors[t] + clearance * allowed_[t] + float_loss;
+      }
+    });
+    return planes;
+  }
+  [[nodiscard]] double sign() const { return inner_ != faces_.inward ? -1 : 1; }
+
+  // The way that the triangles around each vertex face together.
+  [[nodiscard]] std::vector<Vector3> facings(const Planes& planes) const {
+    std::vector<Vector3> facing(mesh_.positions.size());
+    for (std::size_t v = 0; v < facing.size(); ++v) {
+      for (const std::uint32_t t : (*around_)[v]) facing[v] = facing[v] + planes.areas[t];
+      facing[v] = normalized(facing[v]);
     }
-    facing = normalized(facing);
-    double along = 0;
+    return facing;
+  }
+  // Mean over the vertex and its neighbours, several times.
+  [[nodiscard]] std::vector<Vector3> smoothed(std::vector<Vector3> facing) const {
+    std::vector<Vector3> mean(facing.size());
+    for (int pass = 0; pass < smoothing_passes; ++pass) {
+      parallel_for(mean.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          Vector3 sum;
+          for (const std::uint32_t t : (*around_)[v]) {
+            for (const std::uint32_t w : mesh_.triangles[t]) sum = sum + facing[w];
+          }
+          mean[v] = normalized(sum);
+        }
+      });
+      facing.swap(mean);
+    }
+    return facing;
+  }
+
+  // A vertex about as near as possible to where it was, beyond the planes of the triangles around it. The way that it faces goes before
+  // the shortest one: beside a narrow triangle, whose normal may be anything, that leads past the next vertex. That way it may go `room`
+  // however short the other one is. Nothing if there is no such place.
+  [[nodiscard]] static std::optional<Vector3> displacement(std::span<const std::uint32_t> around,
+                                                           const Planes& beyond, const Vector3& facing,
+                                                           double room) {
+    const auto& [areas, normals, errors, offsets] = beyond;
+    std::vector<Vector3> planes;
+    double largest = 0, along = 0;
+    for (const std::uint32_t t : around) largest = std::max(largest, offsets[t]);
     for (const std::uint32_t t : around) {
       if (normals[t] == Vector3{}) continue;
       planes.push_back((largest / offsets[t]) * normals[t]);
@@ -534,51 +581,76 @@ class OneHull {
     }
     // A point of needles only: it stays, and is found to be on the surface.
     if (planes.empty()) return Vector3{};
+    if (along <= room) return along * facing;
     const Vector3 z = nearest_to_origin(planes);
     const double square = length_sq(z);
     if (!(square > 1e-16)) return std::nullopt;
     // The shortest is largest / |z| long; lengths in mesh units have no squares.
     return along * std::sqrt(square) <= longest_detour * largest ? along * facing : (largest / square) * z;
   }
-  void move_vertices(std::span<const double> errors) {
-    const TrianglesAround& around = *around_;
-    const double sign = inner_ != faces_.inward ? -1 : 1, float_loss = this->float_loss();
-    std::vector<Vector3> areas(mesh_.triangles.size()), normals(areas.size());
-    std::vector<double> offsets(areas.size());
-    parallel_for(areas.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const Triangle triangle = scaled(mesh_.positions, mesh_.triangles[t]);
-        areas[t] = sign * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
-        normals[t] = sign * unit_normal(triangle);
-        offsets[t] = errors[t] + clearance * allowed_[t] + float_loss;
+  // Where a vertex goes; how far, scaled: infinite if it has no place.
+  double move_vertex(std::uint32_t v, const Planes& planes, const Vector3& facing, double share_of_room) {
+    Point3& p = facets_.positions[v];
+    p = mesh_.positions[v];
+    double error = 0;
+    for (const std::uint32_t t : (*around_)[v]) error = std::max(error, planes.errors[t]);
+    const std::optional<Vector3> by =
+        displacement((*around_)[v], planes, facing, share_of_room * (*options_.error - error));
+    if (!by) return INFINITY;
+    p = as_written(p + *by);
+    return enlarged(distance(scale_.apply(p), scale_.apply(mesh_.positions[v])));
+  }
+  // Does a facet lie the other way round than its triangle: did corners move sideways past each other?
+  [[nodiscard]] bool is_turned(std::size_t t, const Planes& planes) const {
+    return sign() * dot(unit_normal(scaled(facets_.positions, mesh_.triangles[t])), planes.normals[t]) < 0;
+  }
+  // Vertices of such facets that are not steered yet, which now are.
+  [[nodiscard]] std::vector<std::uint32_t> steer(const Planes& planes,
+                                                 std::vector<std::uint8_t>& steered) const {
+    std::vector<std::uint32_t> vertices;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (!is_turned(t, planes)) continue;
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        if (std::exchange(steered[v], std::uint8_t{1}) == 0) vertices.push_back(v);
       }
-    });
+    }
+    return vertices;
+  }
+
+  // Each by itself at first. Where triangles are narrower than they move, and the surface has ripples, facets turn over: vertices of these go
+  // the way that the surface faces on the whole, about as those beside them go.
+  void move_vertices(std::vector<double> errors) {
+    const Planes planes = planes_of(std::move(errors));
     facets_ = {.positions = mesh_.positions};
     std::vector<double> moved(mesh_.positions.size());
-    parallel_for(moved.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
-      monitor_.checkpoint();
-      for (std::size_t v = begin; v < end; ++v) {
-        Point3& p = facets_.positions[v];
-        const std::optional<Vector3> by = displacement(around[v], areas, normals, offsets);
-        if (!by) {
-          moved[v] = INFINITY;
-          continue;
-        }
-        p = as_written(p + *by);
-        moved[v] = enlarged(distance(scale_.apply(p), scale_.apply(mesh_.positions[v])));
-      }
-    });
+    std::vector<Vector3> facing = facings(planes);
+    std::vector<std::uint8_t> steered(moved.size());
+    std::vector<std::uint32_t> vertices(moved.size());
+    std::iota(vertices.begin(), vertices.end(), 0u);
+    for (int time = 0; !vertices.empty(); ++time) {
+      if (time == 1) facing = smoothed(std::move(facing));
+      parallel_for(vertices.size(), run_.threads, [&](std::size_t begin, std::size_t end) {
+        monitor_.checkpoint();
+        for (const std::uint32_t v : std::span(vertices).subspan(begin, end - begin))
+          moved[v] = move_vertex(v, planes, facing[v], time == 0 ? 0 : room_share);
+      });
+      if (time == max_steered) break;
+      vertices = steer(planes, steered);
+    }
+    blame_moved(planes, moved);
+  }
+  // Facets that are too far from the surface, or turned.
+  void blame_moved(const Planes& planes, std::span<const double> moved) {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const Names& names = mesh_.triangles[t];
       const double most = std::max({moved[names[0]], moved[names[1]], moved[names[2]]});
       // Parameter by parameter: the facet from its triangle, this from the surface.
       const double gap =
-          most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors[t]);
+          most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + planes.errors[t]);
       facets_.gap = std::max(facets_.gap, gap);
       if (gap <= *options_.error) {
-        // Corners that moved sideways past each other: most of these facets meet others, and finding them is cheap.
-        if (allowed_[t] > turned_share * *options_.error &&
-            sign * dot(unit_normal(scaled(facets_.positions, names)), normals[t]) < 0) {
+        // Most of these meet others, and finding them is cheap.
+        if (allowed_[t] > turned_share * *options_.error && is_turned(t, planes)) {
           blame(HullFault::meets_itself, t, mesh_.positions[names[0]]);
           facets_.any_turned = true;
         }
