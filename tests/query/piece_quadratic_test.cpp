@@ -1,6 +1,7 @@
 #include <snug/query/piece_quadratic.h>
 
 #include <gtest/gtest.h>
+#include <testing/instruction_sets.h>
 #include <testing/scheme_surfaces.h>
 
 #include <cmath>
@@ -102,6 +103,31 @@ TEST(piece_quadratic, flatness_bounds_dense_samples) {
   std::cout << "bound over sampled distance: median " << ratios[ratios.size() / 2] << ", largest "
             << ratios.back() << '\n';
   EXPECT_LE(ratios[ratios.size() / 2], 1.15);
+}
+
+TEST(piece_quadratic, flatness_of_some_at_once_is_that_of_each_on_every_instruction_set) {
+  std::mt19937_64 random(43);
+  for (std::size_t count = 1; count <= PieceQuadratic::max_lanes; ++count) {
+    std::vector<PieceQuadratic> quadratics;
+    std::vector<FlatTriangle> triangles;
+    std::vector<Flatness> each;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Case c = random_case(random);
+      quadratics.emplace_back(c.near, c.path);
+      triangles.push_back(c.triangle);
+      each.push_back(quadratics[i].flatness(c.triangle));
+    }
+    std::vector<const PieceQuadratic*> pieces;
+    for (const PieceQuadratic& q : quadratics) pieces.push_back(&q);
+    testing::EachInstructionSet().run([&](const char* name) {
+      std::vector<Flatness> found(count);
+      PieceQuadratic::flatness(pieces, triangles, found);
+      for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(found[i].error, each[i].error) << name;
+        EXPECT_EQ(found[i].corner_gap, each[i].corner_gap) << name;
+      }
+    });
+  }
 }
 
 TEST(piece_quadratic, the_error_of_the_quadratic_is_part_of_the_bound) {

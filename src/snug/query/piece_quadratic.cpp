@@ -3,12 +3,10 @@
 #include <algorithm>
 
 #include <snug/geometry/rounding.h>
+#include <snug/query/flatness_kernel.h>
 
 namespace snug {
 namespace {
-
-// Squares, products and sums lose less than this by underflow.
-constexpr double tiny = 0x1p-500;
 
 Vector3 doubled(const std::array<float, 3>& x) {
   return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
@@ -58,37 +56,42 @@ Vector3 PieceQuadratic::bow(TriangleParameter a, TriangleParameter b) const {
   return 0.25 * (du * du * doubled(uu_) + du * dv * doubled(uv_) + dv * dv * doubled(vv_));
 }
 
-// The difference is a quadratic over the triangle with the Bezier points gap_k and, between them, the middle of
-// two gaps less twice the bow. Split once in four it lies in the hull of the points below.
 Flatness PieceQuadratic::flatness(const FlatTriangle& triangle) const {
+  const PieceQuadratic* const piece = this;
   Flatness result{};
-  std::array<Vector3, 3> gap, middle;
-  // Of the coefficients' terms, whose roundings are in them.
-  double size = 9 * (max_abs(u_) + max_abs(v_)) + max_abs(doubled(uu_)) + max_abs(doubled(vv_)) +
-                4 * max_abs(doubled(uv_));
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3 off = triangle.corner[k] - origin_;
-    size = std::max(size, max_abs(off));
-    gap[k] = from_origin(local(triangle.at[k])) - off;
-  }
-  double gap_sq = 0, sq = 0;
-  Vector3 middles;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t next = (k + 1) % 3;
-    result.bow[k] = bow(triangle.at[k], triangle.at[next]);
-    middle[k] = 0.5 * (gap[k] + gap[next]) - 2.0 * result.bow[k];
-    middles = middles + middle[k];
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    gap_sq = std::max(gap_sq, length_sq(gap[k]));
-    sq = std::max({sq, length_sq(0.5 * (gap[k] + middle[k])), length_sq(0.5 * (gap[k] + middle[(k + 2) % 3])),
-                   length_sq(0.25 * (gap[k] + middles))});
-  }
-  result.corner_gap = std::sqrt(gap_sq);
-  const double rounding = spatial_error(gamma_bound(64) * 4 * size) + tiny;
-  result.error = enlarged(std::sqrt(std::max(sq, gap_sq)) + error() + rounding);
-  if (!(result.error < INFINITY)) result.error = INFINITY;
+  flatness({&piece, 1}, {&triangle, 1}, {&result, 1});
   return result;
+}
+
+void PieceQuadratic::flatness(std::span<const PieceQuadratic* const> pieces,
+                              std::span<const FlatTriangle> triangles, std::span<Flatness> out) {
+  kernels::FlatnessLanes lanes;
+  for (std::size_t l = 0; l < kernels::FlatnessLanes::count; ++l) {
+    // Lanes beyond the last triangle repeat it.
+    const std::size_t i = std::min(l, triangles.size() - 1);
+    const PieceQuadratic& q = *pieces[i];
+    const FlatTriangle& t = triangles[i];
+    lanes.error[l] = q.error();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const TriangleParameter at = q.local(t.at[k]);
+      lanes.at[k][0][l] = at.u;
+      lanes.at[k][1][l] = at.v;
+      for (std::size_t a = 0; a < 3; ++a) lanes.corner[k][a][l] = t.corner[k][a];
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      lanes.origin[a][l] = q.origin_[a];
+      lanes.u[a][l] = q.u_[a];
+      lanes.v[a][l] = q.v_[a];
+      lanes.uu[a][l] = static_cast<double>(q.uu_[a]);
+      lanes.uv[a][l] = static_cast<double>(q.uv_[a]);
+      lanes.vv[a][l] = static_cast<double>(q.vv_[a]);
+    }
+  }
+  kernels::flatness(lanes);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const double error = lanes.error[i];
+    out[i] = {error < INFINITY ? error : INFINITY, lanes.corner_gap[i]};
+  }
 }
 
 }  // namespace snug

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 #include <snug/bounds/quadratic.h>
 #include <snug/patch/piece_path.h>
@@ -18,7 +20,6 @@ struct FlatTriangle {
 struct Flatness {
   double error;       ///< |patch(t) - triangle(t)| <= error over the triangle; infinite if not finite
   double corner_gap;  ///< largest distance of the quadratic at a corner from that of the triangle
-  std::array<Vector3, 3> bow;  ///< of each side: the middle of the quadratic's chord less its curve, rounded
 };
 
 /// A quadratic near a piece as a polynomial in the piece's parameters.
@@ -37,6 +38,10 @@ class PieceQuadratic {
   /// Requires:  parameters that are multiples of 2^-50 on the piece, exact.
   /// Source:    derivations/tessellation.md.
   [[nodiscard]] Flatness flatness(const FlatTriangle& triangle) const;
+  /// The same of up to eight triangles at once, each on the piece of the same number, to the bit on every instruction set.
+  static constexpr std::size_t max_lanes = 8;
+  static void flatness(std::span<const PieceQuadratic* const> pieces, std::span<const FlatTriangle> triangles,
+                       std::span<Flatness> out);
   /// Middle of a chord less the curve, between two parameters of the patch, rounded.
   [[nodiscard]] Vector3 bow(TriangleParameter a, TriangleParameter b) const;
 

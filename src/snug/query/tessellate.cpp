@@ -192,7 +192,8 @@ class MeshRefinement {
   void evaluate(std::size_t first, std::span<const OnPatch> places);
   void examine(std::span<const Index> triangles, bool mark);
   void examine_batch(std::span<const Index> triangles, bool mark);
-  void prove(Index t, bool mark);
+  void prove(std::span<const Index> triangles, bool mark);
+  void mark_coarse(Index t);
   [[nodiscard]] double seen_tolerance(Index t) const;
   [[nodiscard]] static double thickness(const Patch& patch, const BoundingPoints& hull);
   void learn(Worker& worker, Index t, Index room);
@@ -380,26 +381,47 @@ void MeshRefinement::learn(Worker& worker, Index t, Index room) {
   facet.bound = float_up(error);
 }
 
-void MeshRefinement::prove(Index t, bool mark) {
-  Facet& facet = facets_[t];
-  if (!facet.is_coarse()) {
-    const Flatness flatness = quadratics_[facet.quadratic].flatness(flat(t));
-    facet.bound = float_up(flatness.error);
-    if (mark && facet.error() > tolerance(t)) mark_bent(t, flatness);
-  } else if (mark && (facet.quadratic == Facet::thick || facet.error() > tolerance(t))) {
-    if (path_of(places(t)).level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
-    mark_sides(t);
+// Of up to eight triangles.
+void MeshRefinement::prove(std::span<const Index> triangles, bool mark) {
+  std::array<Index, PieceQuadratic::max_lanes> fine{};
+  std::array<const PieceQuadratic*, PieceQuadratic::max_lanes> pieces{};
+  std::array<FlatTriangle, PieceQuadratic::max_lanes> flats;
+  std::array<Flatness, PieceQuadratic::max_lanes> found{};
+  std::size_t count = 0;
+  for (const Index t : triangles) {
+    if (facets_[t].is_coarse()) {
+      if (mark) mark_coarse(t);
+      continue;
+    }
+    fine[count] = t;
+    pieces[count] = &quadratics_[facets_[t].quadratic];
+    flats[count++] = flat(t);
   }
+  if (count == 0) return;
+  PieceQuadratic::flatness({pieces.data(), count}, {flats.data(), count}, {found.data(), count});
+  for (std::size_t i = 0; i < count; ++i) {
+    Facet& facet = facets_[fine[i]];
+    facet.bound = float_up(found[i].error);
+    if (mark && facet.error() > tolerance(fine[i])) mark_bent(fine[i], found[i]);
+  }
+}
+
+void MeshRefinement::mark_coarse(Index t) {
+  const Facet& facet = facets_[t];
+  if (facet.quadratic != Facet::thick && !(facet.error() > tolerance(t))) return;
+  if (path_of(places(t)).level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
+  mark_sides(t);
 }
 
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
 void MeshRefinement::mark_bent(Index t, const Flatness& flatness) {
-  const double taken = quadratics_[facets_[t].quadratic].error() + flatness.corner_gap,
+  const PieceQuadratic& quadratic = quadratics_[facets_[t].quadratic];
+  const double taken = quadratic.error() + flatness.corner_gap,
                left = std::max(tolerance(t) - taken, tolerance(t) / 4);
-  std::array<double, 3> bow_sq;
-  for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
-  const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
   const FacetPlaces at = places(t);
+  std::array<double, 3> bow_sq;
+  for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(quadratic.bow(at[k], at[(k + 1) % 3]));
+  const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
   const TriangleParameter a = at[most], b = at[(most + 1) % 3];
   if (std::max(std::fabs(a.u - b.u), std::fabs(a.v - b.v)) <= shortest_side) {
     return stuck_.store(true, std::memory_order_relaxed);
@@ -457,12 +479,17 @@ void MeshRefinement::examine_batch(std::span<const Index> triangles, bool mark) 
   parallel_for_with(
       triangles.size(), run_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          if (i % 256 == 0) monitor_of(run_).checkpoint();
-          const Index t = triangles[i];
-          if (rooms[i] != Facet::unknown) learn(worker, t, rooms[i]);
-          prove(t, mark);
-          if (mark) mark_long(worker, t);
+        for (std::size_t i = begin; i < end;) {
+          if ((i - begin) % 256 == 0) monitor_of(run_).checkpoint();
+          const std::size_t next = std::min(end, i + PieceQuadratic::max_lanes);
+          const std::span<const Index> some = triangles.subspan(i, next - i);
+          for (; i < next; ++i) {
+            if (rooms[i] != Facet::unknown) learn(worker, triangles[i], rooms[i]);
+          }
+          prove(some, mark);
+          for (const Index t : some) {
+            if (mark) mark_long(worker, t);
+          }
         }
       });
   for (std::size_t i = 0; i < triangles.size(); ++i) {
