@@ -315,54 +315,58 @@ class Chunk {
 // The feet of the corners of pieces; corners at the same point are asked once.
 class CornerFeet {
  public:
-  CornerFeet(const PieceSet& set, std::span<const std::uint32_t> pieces) {
+  CornerFeet(const PieceSet& set, std::span<const std::uint32_t> pieces, const PieceSet& other)
+      : set_(set), pieces_(pieces), other_(other) {
     std::size_t size = 16;
     while (size < 6 * pieces.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
     names_.resize(3 * pieces.size());
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const Triangle corners = set[pieces[i]].corners;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Point3& p = corners[k];
-        std::size_t slot = hash(p) & (size - 1);
-        while (table[slot] != UINT32_MAX && !(points_[table[slot]] == p)) slot = (slot + 1) & (size - 1);
-        if (table[slot] == UINT32_MAX) {
-          table[slot] = static_cast<std::uint32_t>(points_.size());
-          points_.push_back(p);
-          corners_.push_back(static_cast<std::uint32_t>(3 * i + k));
-        }
-        names_[3 * i + k] = table[slot];
+    for (std::size_t c = 0; c < names_.size(); ++c) {
+      const Point3 p = point(c);
+      std::size_t slot = hash(p) & (size - 1);
+      while (table[slot] != UINT32_MAX && !(point(corners_[table[slot]]) == p))
+        slot = (slot + 1) & (size - 1);
+      if (table[slot] == UINT32_MAX) {
+        table[slot] = static_cast<std::uint32_t>(corners_.size());
+        corners_.push_back(static_cast<std::uint32_t>(c));
       }
+      names_[c] = table[slot];
     }
-    feet_.reserve(points_.size());
+    feet_.reserve(corners_.size());
   }
 
-  [[nodiscard]] bool all_found() const { return feet_.size() == points_.size(); }
+  [[nodiscard]] bool all_found() const { return feet_.size() == corners_.size(); }
   // Finds at most so many blocks of feet, of a fixed length so that hints depend on the input alone. Which corner of which of the
   // pieces is farthest among these?
-  std::pair<std::size_t, std::size_t> find(std::size_t blocks, const PieceSet& other, int threads,
-                                           const WorkMonitor& monitor) {
+  std::pair<std::size_t, std::size_t> find(std::size_t blocks, int threads, const WorkMonitor& monitor) {
     constexpr std::size_t block = 256;
-    const std::size_t first = feet_.size(), here = std::min(points_.size() - first, blocks * block);
+    const std::size_t first = feet_.size(), here = std::min(corners_.size() - first, blocks * block);
     feet_.resize(first + here);
+    std::vector<double> distances(here);
     parallel_for((here + block - 1) / block, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         monitor.checkpoint();
         QuadraticFoot hint;
-        for (std::size_t i = first + b * block; i < first + std::min(here, (b + 1) * block); ++i) {
-          hint = feet_[i] = nearest_foot(other, points_[i], hint);
+        for (std::size_t i = b * block; i < std::min(here, (b + 1) * block); ++i) {
+          hint = nearest_foot(other_, point(corners_[first + i]), hint);
+          feet_[first + i] = {{hint.at.u, hint.at.v}, hint.piece};
+          distances[i] = hint.distance;
         }
       }
     });
-    const auto farthest = std::max_element(
-        feet_.begin() + static_cast<std::ptrdiff_t>(first), feet_.end(),
-        [](const QuadraticFoot& x, const QuadraticFoot& y) { return x.distance < y.distance; });
-    const std::uint32_t corner = corners_[static_cast<std::size_t>(farthest - feet_.begin())];
+    const auto farthest =
+        static_cast<std::size_t>(std::max_element(distances.begin(), distances.end()) - distances.begin());
+    const std::uint32_t corner = corners_[first + farthest];
     return {corner / 3, corner % 3};
   }
 
-  [[nodiscard]] const QuadraticFoot& operator()(std::size_t i, std::size_t corner) const {
-    return feet_[names_[3 * i + corner]];
+  [[nodiscard]] QuadraticFoot operator()(std::size_t i, std::size_t corner) const {
+    const auto& [at, piece] = feet_[names_[3 * i + corner]];
+    return foot_at(other_, piece, {at[0], at[1]}, point(3 * i + corner));
+  }
+  // Of the corners of a piece, the largest one.
+  [[nodiscard]] double distance(std::size_t i) const {
+    return std::max({(*this)(i, 0).distance, (*this)(i, 1).distance, (*this)(i, 2).distance});
   }
 
  private:
@@ -375,10 +379,25 @@ class CornerFeet {
     return h;
   }
 
-  std::vector<std::uint32_t> names_;  // of the points, three a piece
-  std::vector<Point3> points_;
+  // Corner c % 3 of piece c / 3.
+  [[nodiscard]] Point3 point(std::size_t c) const {
+    const std::uint32_t piece = pieces_[c / 3];
+    const QuadraticTriangle* const q = set_.kept(piece);
+    return q != nullptr ? q->corners[c % 3] : set_.facet(piece)[c % 3];
+  }
+
+  // A foot is made again where it is wanted: of a hull's facets there are hundreds of thousands.
+  struct Foot {
+    std::array<double, 2> at;
+    std::uint32_t piece;
+  };
+
+  const PieceSet& set_;
+  std::span<const std::uint32_t> pieces_;
+  const PieceSet& other_;
+  std::vector<std::uint32_t> names_;    // of the points, three a piece
   std::vector<std::uint32_t> corners_;  // of each point one
-  std::vector<QuadraticFoot> feet_;
+  std::vector<Foot> feet_;
 };
 
 // How far pieces that lie on flat ones of the other set are from it, at most; of others nothing. Those whose corners are near it are asked.
@@ -388,8 +407,7 @@ std::vector<std::optional<double>> covered_pieces(const PieceSet& set, std::span
   std::vector<std::optional<double>> covered(pieces.size());
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (std::max({corners(i, 0).distance, corners(i, 1).distance, corners(i, 2).distance}) <= most)
-      near.push_back(i);
+    if (corners.distance(i) <= most) near.push_back(i);
   }
   if (near.empty()) return covered;
   const PlaneCover cover(other, most);
@@ -438,14 +456,14 @@ void merge(Farthest& all, const Farthest& part) {
 std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32_t> pieces,
                                 const PieceSet& other, const HausdorffOptions& options, bool last,
                                 Farthest& farthest, const WorkMonitor& monitor) {
-  CornerFeet corners(set, pieces);
+  CornerFeet corners(set, pieces, other);
   const auto end_beyond_threshold = [&] {
     farthest.upper = std::max(farthest.upper, farthest_from_a_point(set, pieces, other));
     return std::vector<Unresolved>{};
   };
   while (!corners.all_found()) {
     if (is_beyond(farthest.lower, options)) return end_beyond_threshold();
-    const auto [i, k] = corners.find(blocks_at_once, other, options.threads, monitor);
+    const auto [i, k] = corners.find(blocks_at_once, options.threads, monitor);
     if (options.make_side_test || !is_beyond(corners(i, k).distance, options)) continue;
     const TriangleParameter at{k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
     const BoundedPoint point = set.point(pieces[i], at);
@@ -460,7 +478,7 @@ std::vector<Unresolved> resolve(const PieceSet& set, std::span<const std::uint32
   // Farthest first: they bound at once how far the others must be examined.
   std::vector<double> far(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    far[i] = std::max({corners(i, 0).distance, corners(i, 1).distance, corners(i, 2).distance});
+    far[i] = corners.distance(i);
   }
   const std::vector<std::optional<double>> covered =
       covered_pieces(set, pieces, other, corners, cover_share * options.precision, options.threads, monitor);

@@ -392,6 +392,7 @@ class OneHull {
   // through itself, which is asked after some rounds, only that.
   std::vector<HullProblem> run(OwnContacts& contacts, int asked_from) {
     for (int round = 0;; ++round) {
+      end_round();
       LocalTessellation made = tessellate(surface_, tolerances_, {.normals = false}, run_);
       begin_round(made);
       if (round == 0) {
@@ -424,6 +425,14 @@ class OneHull {
   }
 
  private:
+  // Before the next one makes its triangles: those of both would take most of the memory.
+  void end_round() {
+    mesh_ = {};
+    parts_ = {};
+    allowed_ = {};
+    around_.reset();
+    facets_ = {};
+  }
   void begin_round(LocalTessellation& made) {
     mesh_ = std::move(made.mesh);
     mesh_.parameters = {};
@@ -823,9 +832,10 @@ class Verification {
     }
     // Those of a closed surface lie on different sides of it.
     if (whole[0] && whole[1] && !hulls_.closed) {
-      FacetSurface outer = surface_of(*hulls_.outer, all_of(*hulls_.outer));
       for_each_part(*hulls_.inner, [&](std::span<const std::uint32_t> part) {
-        FacetSurface inner = surface_of(*hulls_.inner, part);
+        const std::vector<std::uint32_t> near = near_part(*hulls_.outer, *hulls_.inner, part);
+        if (near.empty()) return;
+        FacetSurface inner = surface_of(*hulls_.inner, part), outer = surface_of(*hulls_.outer, near);
         apart(inner.placed(), outer.placed(), HullFault::meets_other, true, part);
       });
     }
@@ -860,6 +870,22 @@ class Verification {
     const std::size_t before = problems_.size();
     for (std::size_t begin = 0; begin < order.size() && problems_.size() == before; begin += part_size)
       check(std::span(order).subspan(begin, std::min(part_size, order.size() - begin)));
+  }
+  // Triangles that may have a point in common with a part of another hull.
+  [[nodiscard]] static std::vector<std::uint32_t> near_part(const Hull& hull, const Hull& other,
+                                                            std::span<const std::uint32_t> part) {
+    const auto add_to = [](Box3& box, const Hull& of, std::uint32_t t) {
+      for (const std::uint32_t v : of.triangles[t]) box.add(of.positions[v]);
+    };
+    Box3 around;
+    for (const std::uint32_t t : part) add_to(around, other, t);
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t t = 0; t < hull.triangles.size(); ++t) {
+      Box3 box;
+      add_to(box, hull, t);
+      if (overlap(box, around)) near.push_back(t);
+    }
+    return near;
   }
   [[nodiscard]] FacetSurface surface_of(const Hull& hull, std::span<const std::uint32_t> which) const {
     return {hull, which, max_kept(), model_.surface().shared_library(), monitor_};
@@ -941,7 +967,7 @@ class Verification {
     }
   }
 
-  static constexpr std::size_t part_size = 8192;
+  static constexpr std::size_t part_size = 4096;
 
   const Surface& surface_;
   const SurfaceBvh& model_;

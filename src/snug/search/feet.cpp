@@ -322,6 +322,14 @@ QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p,
   return foot;
 }
 
+QuadraticFoot foot_at(const PieceSet& set, std::uint32_t piece, TriangleParameter at, const Point3& p) {
+  const QuadraticTriangle* const q = set.kept(piece);
+  const Point3 point = q != nullptr && is_curved(*q)
+                           ? point_of(*q, at)
+                           : flat_point(q != nullptr ? q->corners : set.facet(piece), at);
+  return {piece, at, point, distance(point, p)};
+}
+
 QuadraticFoot foot_beside(const PieceSet& set, const QuadraticFoot& foot, const Point3& p) {
   const QuadraticTriangle& q = set[foot.piece];
   QuadraticFoot beside = foot;

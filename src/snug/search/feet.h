@@ -40,6 +40,9 @@ struct QuadraticFoot {
 /// farther than `least`, if that is seen sooner.
 [[nodiscard]] QuadraticFoot foot_on(const PieceSet& set, std::uint32_t piece, const Point3& p,
                                     double least = INFINITY);
+/// The foot of p at a parameter of a piece, as foot_on() has it.
+[[nodiscard]] QuadraticFoot foot_at(const PieceSet& set, std::uint32_t piece, TriangleParameter at,
+                                    const Point3& p);
 /// A point near p on the piece of another point's foot, by Newton's method from that: on the same sheet of a piece that comes back to where it
 /// was, if both points are near each other.
 [[nodiscard]] QuadraticFoot foot_beside(const PieceSet& set, const QuadraticFoot& foot, const Point3& p);
