@@ -340,7 +340,7 @@ struct LoopShape {
     bezier_points(d, c, b);
   }
   template <class D, class V = hn::Vec<D>>
-  static HWY_INLINE void hull(D d, const V* b, V* out) {
+  static HWY_NOINLINE void hull(D d, const V* b, V* out) {
     split_once(d, b, out);
   }
 

@@ -98,12 +98,12 @@ class PieceLanes {
     add_level(rows_.first(), memory_.control, memory_.patch, whole_, hull);
     for (const Rows::Tip& tip : rows_.tips()) {
       NetLanes<float> net{memory_.patch, tip.control};
-      QuadraticV<V> quadratic = restricted(d_, whole_, tip.from_patch);
+      QuadraticV<V> quadratic = restricted_to(tip.from_patch, whole_);
       for (unsigned level = 1; level < levels; ++level) {
         const LanesOf<float>& next = memory_.tip[level % 2];
         add_level(tip.levels[level], net.points, next, quadratic, hull);
         net = {next, tip.levels[level].tip_control};
-        quadratic = restricted(d_, quadratic, tip.levels[level].to_tip);
+        quadratic = restricted_to(tip.levels[level].to_tip, quadratic);
       }
       add_tip(tip.layout, net, quadratic, hull, tips);
     }
@@ -127,9 +127,13 @@ class PieceLanes {
   }
   HWY_INLINE V times(double factor, V v) const { return hn::Mul(above(d_, factor), v); }
 
-  // A step of points that comes to `next`.
-  HWY_INLINE void add_step(const Rows::Step& step, const LanesOf<float>& from, const LanesOf<float>& next,
-                           const QuadraticV<V>& quadratic, HullV<D>& hull) const {
+  HWY_NOINLINE QuadraticV<V> restricted_to(const RestrictionOf<float>& weights,
+                                           const QuadraticV<V>& quadratic) const {
+    return restricted(d_, quadratic, weights);
+  }
+  // A step of points that comes to `next`. Called where it would be inlined in four places.
+  HWY_NOINLINE void add_step(const Rows::Step& step, const LanesOf<float>& from, const LanesOf<float>& next,
+                             const QuadraticV<V>& quadratic, HullV<D>& hull) const {
     each_product(d_, step.points, from,
                  [&](std::size_t r, const Vec3<V>& p) HWY_ATTR { store(d_, p, next, r); });
     each_product(d_, step.bezier, next, [&](std::size_t r, const Vec3<V>& p) HWY_ATTR {
@@ -141,7 +145,7 @@ class PieceLanes {
                             const QuadraticV<V>& quadratic, HullV<D>& hull) const {
     add_step(*level.step, from, next, quadratic, hull);
     if (level.middle == nullptr) return;
-    add_step(*level.middle, next, memory_.middle, restricted(d_, quadratic, level.to_middle), hull);
+    add_step(*level.middle, next, memory_.middle, restricted_to(level.to_middle, quadratic), hull);
   }
 
   // The error of a vector, whatever its direction, and along that of the hull.
@@ -301,9 +305,9 @@ class PieceLanes {
 
 // From lanes to the patches of a vector of doubles.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void hand_out_frames(D d, const PlanarTriangle<V>& t, V axis_x, V axis_y, V largest,
-                                const FoundLanes& found, std::size_t from,
-                                std::span<const PieceToFit> pieces) {
+HWY_NOINLINE void hand_out_frames(D d, const PlanarTriangle<V>& t, V axis_x, V axis_y, V largest,
+                                  const FoundLanes& found, std::size_t from,
+                                  std::span<const PieceToFit> pieces) {
   const std::size_t here = pieces.size();
   const auto of = [&](std::size_t row) HWY_ATTR { return load_as(d, found.at(row) + from); };
   const auto of3 = [&](std::size_t row) HWY_ATTR { return Vec3<V>{of(row), of(row + 1), of(row + 2)}; };

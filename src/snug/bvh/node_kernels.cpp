@@ -53,7 +53,7 @@ HWY_INLINE void turned(const Turn& turn, const float* rows, std::size_t r, float
 }
 
 // Places another node's box; false where nothing can be said. `doubt` becomes what roundings do to a gap.
-HWY_INLINE bool place(float reach, const SeenBox& other, const Turn& turn, OtherBox& box, float& doubt) {
+HWY_INLINE bool place_box(float reach, const SeenBox& other, const Turn& turn, OtherBox& box, float& doubt) {
   reach += 2 * turn.scale * other.reach + std::fabs(other.offset[0]) + std::fabs(other.offset[1]) +
            std::fabs(other.offset[2]);
   doubt = pair_roundings * reach;
@@ -81,7 +81,7 @@ Near seen_box(const float* node, float reach, const SeenBox& other, const Turn& 
               float prune_distance, float* out) {
   OtherBox box;
   float doubt;
-  if (!place(reach, other, turn, box, doubt)) return nothing_known(out);
+  if (!place_box(reach, other, turn, box, doubt)) return nothing_known(out);
   return compare<false>(node, box, doubt + slack, prune_distance, out);
 }
 
@@ -90,7 +90,7 @@ Near seen_along(const float* node, float reach, const SeenBox& other, const Turn
                 float prune_distance, float* out) {
   OtherBox box;
   float doubt;
-  if (!place(reach, other, turn, box, doubt)) return nothing_known(out);
+  if (!place_box(reach, other, turn, box, doubt)) return nothing_known(out);
   const Tag d;
   Near near{0, INFINITY};
   const V all_slack = hn::Set(d, doubt + slack);

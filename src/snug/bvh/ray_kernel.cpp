@@ -14,7 +14,7 @@ using Tag = hn::CappedTag<float, 8>;
 using V = hn::Vec<Tag>;
 
 // More than what roundings to single precision can do to a gap, as a part of all that is involved.
-constexpr float roundings = 64 * 0x1p-24F;
+constexpr float gap_roundings = 64 * 0x1p-24F;
 // More than what products lose that underflow, of a length and of a square.
 constexpr float lost = 0x1p-118F;
 
@@ -34,7 +34,7 @@ HWY_INLINE std::uint32_t met(const Row& row, V box_reach, const Segment& segment
   const V reach = hn::Add(
       hn::Add(box_reach, segment.half),
       hn::Add(hn::Add(hn::Abs(segment.middle.x), hn::Abs(segment.middle.y)), hn::Abs(segment.middle.z)));
-  const V doubt = hn::Add(hn::Mul(hn::Set(d, roundings), reach), segment.slack);
+  const V doubt = hn::Add(hn::Mul(hn::Set(d, gap_roundings), reach), segment.slack);
   // Along the axes of a box: of the offset, and cosines.
   V t[3], c[3], far[3];
   V gap = hn::Neg(doubt), ahead = hn::Zero(d);
@@ -56,13 +56,14 @@ HWY_INLINE std::uint32_t met(const Row& row, V box_reach, const Segment& segment
   gap = hn::Max(gap, hn::Sub(hn::Abs(along), hn::Add(segment.half, ahead)));
   // From the node's origin, which is known in double precision: the node may be small.
   const V own = dot(Vec3<V>{row(0), row(1), row(2)}, segment.direction);
-  const V unsure = hn::Add(hn::Add(hn::Mul(hn::Set(d, roundings), box_reach), segment.slack),
+  const V unsure = hn::Add(hn::Add(hn::Mul(hn::Set(d, gap_roundings), box_reach), segment.slack),
                            hn::Mul(hn::Set(d, 0x1p-21F), hn::Abs(segment.origin)));
   hn::StoreU(hn::Add(segment.origin, hn::Sub(hn::Sub(own, ahead), unsure)), d, begin);
   return bits(d, hn::Not(hn::Gt(gap, doubt)));
 }
 
-std::uint32_t boxes(const NodeBoxes& node, const SeenSegments& segments, std::size_t which, float* begin) {
+std::uint32_t meet_boxes(const NodeBoxes& node, const SeenSegments& segments, std::size_t which,
+                         float* begin) {
   const Tag d;
   const auto one = [&](const std::array<float, ray_width>& of_all) { return hn::Set(d, of_all[which]); };
   const Segment segment{{one(segments.middle[0]), one(segments.middle[1]), one(segments.middle[2])},
@@ -129,7 +130,7 @@ Meeting beside(const NearQuadratic& set, const SeenSegments& segments) {
                         some(segments.direction[2])};
     const V far = hn::Add(hn::Add(some(segments.half), hn::Set(d, set.reach)),
                           hn::Add(hn::Add(hn::Abs(middle.x), hn::Abs(middle.y)), hn::Abs(middle.z)));
-    const V rounding = hn::Add(hn::Mul(hn::Set(d, roundings), far), some(segments.slack));
+    const V rounding = hn::Add(hn::Mul(hn::Set(d, gap_roundings), far), some(segments.slack));
     const V error = hn::Set(d, (1 + 0x1p-20F) * set.error), zero = hn::Zero(d);
     const V lost_here = hn::Mul(hn::Set(d, lost), hn::Add(hn::Set(d, 1.0F), far));
     Vec3<V> points[6];
@@ -177,7 +178,7 @@ HWY_AFTER_NAMESPACE();
 namespace snug::kernels {
 
 HWY_EXPORT(place);
-HWY_EXPORT(boxes);
+HWY_EXPORT(meet_boxes);
 HWY_EXPORT(rays);
 HWY_EXPORT(beside);
 
@@ -193,7 +194,7 @@ std::uint32_t boxes_met(const NodeBoxes& node, const SeenSegments& segments, std
     begin.fill(-INFINITY);
     return all;
   }
-  return HWY_DYNAMIC_DISPATCH(boxes)(node, segments, which, begin.data()) & all;
+  return HWY_DYNAMIC_DISPATCH(meet_boxes)(node, segments, which, begin.data()) & all;
 }
 
 std::uint32_t segments_meeting(const NodeBoxes& node, std::size_t place, const SeenSegments& segments,

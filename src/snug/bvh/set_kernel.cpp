@@ -17,7 +17,7 @@ using Tag = hn::CappedTag<double, most_lanes>;
 using V = hn::Vec<Tag>;
 using Point = Vec3<V>;
 
-HWY_INLINE V set(double x) { return hn::Set(Tag(), x); }
+HWY_INLINE V everywhere(double x) { return hn::Set(Tag(), x); }
 
 // Numbers of some sets, each in a row; lanes beyond them repeat the last.
 class Block {
@@ -55,11 +55,11 @@ HWY_INLINE V error_of(const Block& block, const Point& w) {
   const V most =
       hn::Min(hn::Add(hn::Mul(part, block.number(normal_error)), hn::Mul(hn::Sqrt(dot(rest, rest)), error)),
               hn::Mul(hn::Sqrt(length_sq), error));
-  return hn::Add(hn::Mul(most, set(1 + 0x1p-45)), hn::Mul(set(0x1p-47), error));
+  return hn::Add(hn::Mul(most, everywhere(1 + 0x1p-45)), hn::Mul(everywhere(0x1p-47), error));
 }
 
 HWY_INLINE ExtentV extent(const Block& block, const Vector3& axis) {
-  const Point w{set(axis.x), set(axis.y), set(axis.z)};
+  const Point w{everywhere(axis.x), everywhere(axis.y), everywhere(axis.z)};
   V reach = block.number(box_error);
   for (std::size_t k = 0; k < 3; ++k) {
     reach = hn::Add(reach, hn::Mul(block.number(halves + k), hn::Abs(dot(w, block.point(axes_row + 3 * k)))));
@@ -69,7 +69,7 @@ HWY_INLINE ExtentV extent(const Block& block, const Vector3& axis) {
   V h[6] = {hn::Zero(Tag())};
   for (std::size_t k = 1; k < 6; ++k) h[k] = dot(w, block.point(net + 3 * (k - 1)));
   V least = hn::Min(hn::Min(h[0], h[1]), h[2]), most = hn::Max(hn::Max(h[0], h[1]), h[2]);
-  const V inner = hn::Add(hn::Add(h[3], h[4]), h[5]), half = set(0.5), quarter = set(0.25);
+  const V inner = hn::Add(hn::Add(h[3], h[4]), h[5]), half = everywhere(0.5), quarter = everywhere(0.25);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const V inside = hn::Mul(quarter, hn::Add(h[k], inner));
@@ -77,8 +77,8 @@ HWY_INLINE ExtentV extent(const Block& block, const Vector3& axis) {
     most = hn::Max(most, hn::Max(inside, hn::Mul(half, hn::Add(hn::Max(h[k], h[next]), h[3 + k]))));
   }
   const V height = dot(w, block.point(corner));
-  const V off = hn::Add(hn::Mul(hn::Add(error_of(block, w), block.number(slack)), set(1 + 0x1p-42)),
-                        set(17 * underflow_error));
+  const V off = hn::Add(hn::Mul(hn::Add(error_of(block, w), block.number(slack)), everywhere(1 + 0x1p-42)),
+                        everywhere(17 * underflow_error));
   return {hn::Max(hn::Sub(middle, reach), hn::Sub(hn::Add(height, least), off)),
           hn::Min(hn::Add(middle, reach), hn::Add(hn::Add(height, most), off))};
 }

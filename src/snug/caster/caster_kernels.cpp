@@ -25,8 +25,8 @@ constexpr float near_enough = 0x1p-6F, hopeful = 0.25F;
 // Of a box seen from a ray: what roundings do to a quotient.
 constexpr float wider = 1 + 16 * 0x1p-24F;
 
-std::uint32_t boxes(const CasterBoxes& boxes, const CasterRay& ray, float grown, float from, float to,
-                    float* enter) {
+std::uint32_t entered(const CasterBoxes& boxes, const CasterRay& ray, float grown, float from, float to,
+                      float* enter) {
   const Tag d;
   const V by = hn::Set(d, grown);
   std::uint32_t met = 0;
@@ -350,7 +350,7 @@ HWY_INLINE CasterHit walk_for(const CasterNode* nodes, const CasterBlock* blocks
     if ((top.name & caster_leaf_bit) == 0) {
       const CasterNode& node = nodes[top.name];
       HWY_ALIGN float enter[caster_width];
-      const std::uint32_t met = boxes(node.boxes, ray, 0, from, best.t, enter);
+      const std::uint32_t met = entered(node.boxes, ray, 0, from, best.t, enter);
       // Shadow rays begin beside the surface that they leave, and are blocked farther on.
       constexpr auto order =
           query == CasterQuery::any ? OpenNodes::Order::farthest_first : OpenNodes::Order::nearest_first;
@@ -417,14 +417,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace snug::kernels {
 
-HWY_EXPORT(boxes);
+HWY_EXPORT(entered);
 HWY_EXPORT(near_pieces);
 HWY_EXPORT(walk);
 HWY_EXPORT(piece);
 
 std::uint32_t enter_boxes(const CasterBoxes& boxes_of_node, const CasterRay& ray, float grown, float from,
                           float to, float* enter) {
-  return HWY_DYNAMIC_DISPATCH(boxes)(boxes_of_node, ray, grown, from, to, enter);
+  return HWY_DYNAMIC_DISPATCH(entered)(boxes_of_node, ray, grown, from, to, enter);
 }
 
 std::uint32_t near_ray(const CasterBlock& triangles, const CasterRay& ray, float grown) {
