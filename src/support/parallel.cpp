@@ -12,6 +12,15 @@
 namespace snug {
 namespace {
 
+#if defined(__MINGW32__) && defined(__GNUC__) && !defined(__clang__)
+// GCC keeps a thread's own objects under one key of winpthreads, which frees their memory when the thread ends, and their destructors
+// under another. Keys end in the order in which they were made, and the memory's would come first: here the other one is made.
+extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept;
+[[gnu::constructor(101)]] void make_key_of_destructors() {
+  __cxa_thread_atexit([](void*) {}, nullptr, nullptr);
+}
+#endif
+
 std::atomic<bool> refused{false};
 
 // Threads that pay: more than there are cores only wait for one another.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <new>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace snug::parallel_test {
@@ -45,6 +46,27 @@ TEST(parallel_for, works_inside_of_threads_of_its_own) {
     }
   });
   EXPECT_EQ(sum, 800u);
+}
+
+// Freed memory that is given out again soon looks otherwise.
+struct Whole {
+  std::vector<int> values = std::vector<int>(64, 7);
+  static inline std::atomic<int> ended{0}, damaged{0};
+  ~Whole() {
+    ++ended;
+    if (values != std::vector<int>(64, 7)) ++damaged;
+  }
+};
+thread_local Whole whole;
+
+TEST(parallel_for, objects_of_threads_are_whole_when_their_threads_end) {
+  for (int i = 0; i < 200; ++i) {
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t) threads.emplace_back([] { EXPECT_EQ(whole.values.size(), 64u); });
+    for (std::thread& thread : threads) thread.join();
+  }
+  EXPECT_EQ(Whole::ended, 800);
+  EXPECT_EQ(Whole::damaged, 0);
 }
 
 TEST(parallel_for, hands_on_an_exception_of_any_thread) {
