@@ -9,12 +9,13 @@
 #include <support/binary.h>
 #include <support/contract.h>
 #include <support/number.h>
+#include <support/system_files.h>
 
 namespace snug {
 namespace {
 
 std::string ending_of(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = system_files::name_of(system_files::path_of(path).extension());
   std::ranges::transform(ending, ending.begin(), lower_case);
   return ending;
 }

@@ -6,6 +6,7 @@
 #include <support/error.h>
 #include <support/names.h>
 #include <support/read_file.h>
+#include <support/system_files.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -42,7 +43,7 @@ double error_of(const Options& options, const Surface& surface) {
 std::string name_of_part(const Options& options) {
   if (!options.name.empty()) return options.name;
   const std::string& file = options.scene.empty() ? options.mesh : options.scene;
-  return file == "-" ? "part" : std::filesystem::path(file).stem().string();
+  return file == "-" ? "part" : system_files::name_of(system_files::path_of(file).stem());
 }
 
 std::string number_of(std::size_t count, const char* word) {
@@ -141,7 +142,7 @@ Job read_all(const Options& options, const WorkMonitor& monitor) {
       [&](const std::string& path) { return read_file(path, monitor); }, monitor);
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     const std::string& file = scene.text.meshes[i].file;
-    job.add(file, scene.surfaces[i], std::filesystem::path(file).stem().string());
+    job.add(file, scene.surfaces[i], system_files::name_of(system_files::path_of(file).stem()));
   }
   for (const SceneText::Part& part : scene.text.parts) job.parts.push_back({part.name, part.mesh, part.pose});
   return job;

@@ -12,6 +12,7 @@
 #include <support/number.h>
 #include <support/parallel.h>
 #include <support/read_file.h>
+#include <support/system_files.h>
 
 #include "answer_writer.h"
 #include "common.h"
@@ -92,7 +93,7 @@ std::vector<std::vector<double>> read_path(const Robot& robot, const Options& op
 
 // What other commands take by --scene.
 void refuse_scenes(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = system_files::name_of(system_files::path_of(path).extension());
   std::ranges::transform(ending, ending.begin(), lower_case);
   for (const char* const scene : {".json", ".3mf", ".gltf", ".glb", ".usda"}) {
     if (ending != scene) continue;

@@ -15,6 +15,7 @@
 #include <support/number.h>
 #include <support/parallel.h>
 #include <support/read_file.h>
+#include <support/system_files.h>
 #include <nlohmann/json.hpp>
 
 #include "curve.h"
@@ -164,7 +165,7 @@ std::string words_of(const Json& value, const std::string& where, std::size_t co
 class SceneReader {
  public:
   SceneReader(const std::string& path, const CommonOptions& options, bool nearest_rigid)
-      : folder_(std::filesystem::path(path == "-" ? "" : path).parent_path()),
+      : folder_(system_files::path_of(path == "-" ? "" : path).parent_path()),
         options_(options),
         mending_{nearest_rigid, notes_for(options)} {}
 
@@ -226,8 +227,9 @@ class SceneReader {
     const auto [known, fresh] = meshes_.emplace(key, static_cast<std::uint32_t>(scene_.meshes.size()));
     if (fresh) {
       require_words(options, where);
-      const std::filesystem::path own(path);
-      scene_.meshes.push_back({path, own.is_absolute() ? path : (folder_ / own).generic_string(), options});
+      const std::filesystem::path own = system_files::path_of(path);
+      scene_.meshes.push_back(
+          {path, own.is_absolute() ? path : system_files::name_of(folder_ / own), options});
     }
     return known->second;
   }
@@ -371,7 +373,7 @@ namespace {
 
 // Formats that place several meshes.
 bool is_assembly(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = system_files::name_of(system_files::path_of(path).extension());
   for (char& c : ending) c = lower_case(c);
   for (const char* known :
        {".gltf", ".glb", ".3mf", ".usda", ".usd", ".dae", ".fbx", ".3ds", ".blend", ".lwo", ".x"}) {
@@ -383,9 +385,9 @@ bool is_assembly(const std::string& path) {
 // Reads files beside one, and takes each into a fingerprint.
 std::function<std::string(const std::string&)> beside(const std::string& path, const ReadBytes& read,
                                                       std::uint64_t& of_all) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const std::filesystem::path folder = system_files::path_of(path).parent_path();
   return [folder, &read, &of_all](const std::string& other) {
-    std::string bytes = read((folder / other).generic_string());
+    std::string bytes = read(system_files::name_of(folder / system_files::path_of(other)));
     of_all = fingerprint(bytes, of_all);
     return bytes;
   };

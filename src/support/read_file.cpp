@@ -17,11 +17,20 @@ namespace {
   fail_in_file(name, "cannot be read: " + std::generic_category().message(reason));
 }
 
+// Windows opens none.
+[[noreturn]] void fail_folder(const std::string& name) {
+  fail_in_file(name, "is a directory: name a file in it");
+}
+bool is_folder(const system_files::Status& status) { return status.sort == system_files::Sort::folder; }
+
 class InputDescriptor {
  public:
   explicit InputDescriptor(const std::string& path)
       : number_(path == "-" ? system_files::standard_input : system_files::open_to_read(path)) {
-    if (number_ < 0) fail_with_reason(path, errno);
+    if (number_ >= 0) return;
+    const int reason = errno;
+    if (is_folder(system_files::status_of(path))) fail_folder(path);
+    fail_with_reason(path, reason);
   }
   ~InputDescriptor() {
     if (number_ != system_files::standard_input) system_files::close(number_);
@@ -42,7 +51,7 @@ struct Size {
 
 Size size_of(int descriptor, const std::string& name) {
   const system_files::Status status = system_files::status_of(descriptor);
-  if (status.sort == system_files::Sort::folder) fail_in_file(name, "is a directory: name a file in it");
+  if (is_folder(status)) fail_folder(name);
   // A terminal, or one that never ends.
   if (status.sort == system_files::Sort::character_device) return {0, 20};
   if (status.sort != system_files::Sort::file || status.size == 0) return {};

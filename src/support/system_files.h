@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 /// Files as POSIX and Windows have them: names are UTF-8 of any length, nothing is translated in text. Functions return what
@@ -51,6 +52,10 @@ void sync_folder(const std::string& folder);
 [[nodiscard]] int rename(const std::string& from, const std::string& to);
 /// Symbolic links resolved; empty with errno on failure.
 [[nodiscard]] std::string canonical(const std::string& path);
+/// As the standard library has it. Of what is not UTF-8 Windows keeps U+FFFD.
+[[nodiscard]] std::filesystem::path path_of(const std::string& name);
+/// Its name, with `/`.
+[[nodiscard]] std::string name_of(const std::filesystem::path& path);
 /// With `/`, or "." for a bare name.
 [[nodiscard]] std::string folder_of(const std::string& path);
 

@@ -93,6 +93,9 @@ std::string canonical(const std::string& path) {
   return {};
 }
 
+std::filesystem::path path_of(const std::string& name) { return name; }
+std::string name_of(const std::filesystem::path& path) { return path.generic_string(); }
+
 std::string folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return folder.empty() ? "." : folder;

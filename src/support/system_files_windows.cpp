@@ -32,7 +32,7 @@ std::string narrow(const std::wstring& text) {
 }
 
 // Names of more than 259 characters are known in full and with a prefix alone.
-std::wstring name_of(const std::string& path) {
+std::wstring full_name(const std::string& path) {
   std::wstring name = wide(path);
   if (name.size() < 240 || name.starts_with(LR"(\\?\)")) return name;
   const DWORD count = ::GetFullPathNameW(name.c_str(), 0, nullptr, nullptr);
@@ -86,7 +86,7 @@ constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 Status status_of(const std::string& path) {
   struct _stat64 found {};
-  return ::_wstat64(name_of(path).c_str(), &found) == 0 ? status_from(found) : Status{};
+  return ::_wstat64(full_name(path).c_str(), &found) == 0 ? status_from(found) : Status{};
 }
 
 Status status_of(int descriptor) {
@@ -95,15 +95,15 @@ Status status_of(int descriptor) {
 }
 
 int open_to_read(const std::string& path) {
-  return ::_wopen(name_of(path).c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
+  return ::_wopen(full_name(path).c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
 }
 int open_to_write(const std::string& path) {
-  return ::_wopen(name_of(path).c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
+  return ::_wopen(full_name(path).c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
 }
 // Shared with whoever removes it, as remove_unfinished_files() does while it is open; _wopen() does not.
 int create(const std::string& path, unsigned permissions) {
   const HANDLE handle = ::CreateFileW(
-      name_of(path).c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
+      full_name(path).c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
       CREATE_NEW, (permissions & 0200u) != 0 ? FILE_ATTRIBUTE_NORMAL : FILE_ATTRIBUTE_READONLY, nullptr);
   if (handle == INVALID_HANDLE_VALUE) return failed_as_windows_says();
   const int descriptor = ::_open_osfhandle(reinterpret_cast<std::intptr_t>(handle),
@@ -120,7 +120,8 @@ std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) {
   return ::_write(descriptor, bytes, static_cast<unsigned>(std::min(count, most_at_once)));
 }
 int open_to_update(const std::string& path) {
-  return ::_wopen(name_of(path).c_str(), _O_RDWR | _O_CREAT | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
+  return ::_wopen(full_name(path).c_str(), _O_RDWR | _O_CREAT | _O_BINARY | _O_NOINHERIT,
+                  _S_IREAD | _S_IWRITE);
 }
 int lock(int descriptor) {
   OVERLAPPED everything{};
@@ -153,17 +154,17 @@ int truncate(int descriptor, std::uint64_t size) {
 int close(int descriptor) noexcept { return ::_close(descriptor); }
 // An open file is gone for others at once, and its name when it is closed.
 int remove(const char* path) noexcept {
-  return ::DeleteFileW(name_of(path).c_str()) ? 0 : failed_as_windows_says();
+  return ::DeleteFileW(full_name(path).c_str()) ? 0 : failed_as_windows_says();
 }
 
-bool is_writable(const std::string& path) { return ::_waccess(name_of(path).c_str(), 2) == 0; }
+bool is_writable(const std::string& path) { return ::_waccess(full_name(path).c_str(), 2) == 0; }
 void set_permissions(int, unsigned) noexcept {}
 int sync(int descriptor) { return ::_commit(descriptor); }
 void sync_folder(const std::string&) {}  // the rename writes through
 
 int rename(const std::string& from, const std::string& to) {
   constexpr DWORD how = MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH;
-  return ::MoveFileExW(name_of(from).c_str(), name_of(to).c_str(), how) ? 0 : failed_as_windows_says();
+  return ::MoveFileExW(full_name(from).c_str(), full_name(to).c_str(), how) ? 0 : failed_as_windows_says();
 }
 
 // What a rename would replace: the file itself, for links are rare here and stay as they are.
@@ -178,6 +179,9 @@ std::string canonical(const std::string& path) {
   full.resize(::GetFullPathNameW(name.c_str(), count, full.data(), nullptr));
   return narrow(full);
 }
+
+std::filesystem::path path_of(const std::string& name) { return wide(name); }
+std::string name_of(const std::filesystem::path& path) { return narrow(path.generic_wstring()); }
 
 std::string folder_of(const std::string& path) {
   const std::size_t end = path.find_last_of("/\\");

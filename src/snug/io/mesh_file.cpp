@@ -15,12 +15,13 @@
 #include <support/number.h>
 #include <support/read_file.h>
 #include <support/run.h>
+#include <support/system_files.h>
 
 namespace snug {
 namespace {
 
 std::string lower_ending(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = system_files::name_of(system_files::path_of(path).extension());
   std::ranges::transform(ending, ending.begin(), lower_case);
   return ending;
 }
@@ -175,9 +176,9 @@ void finish(ControlMesh& mesh, const std::string& name, const ReadOptions& optio
 /// With files beside that of the path, unless the caller has them.
 ReadOptions beside(const std::string& path, ReadOptions options, const Run& run) {
   if (!options.other_file && path != "-") {
-    options.other_file = [folder = std::filesystem::path(path).parent_path(),
+    options.other_file = [folder = system_files::path_of(path).parent_path(),
                           monitor = monitor_of(run)](const std::string& other) {
-      return read_file((folder / other).generic_string(), monitor);
+      return read_file(system_files::name_of(folder / system_files::path_of(other)), monitor);
     };
   }
   return options;
@@ -200,7 +201,7 @@ MeshAssembly parse_assembly(std::string_view bytes, const std::string& path, con
     result = assembled(std::move(*parts), name, options.notes);
   } else {
     result.meshes.push_back(parsed(bytes, ending, name, options));
-    result.parts.push_back({std::filesystem::path(name).stem().string(), 0, {}});
+    result.parts.push_back({system_files::name_of(system_files::path_of(name).stem()), 0, {}});
   }
   for (ControlMesh& mesh : result.meshes) finish(mesh, name, options);
   return result;

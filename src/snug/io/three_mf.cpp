@@ -18,6 +18,7 @@
 #include <support/names.h>
 #include <support/number.h>
 #include <support/read_file.h>
+#include <support/system_files.h>
 #include <support/text_cursor.h>
 
 namespace snug {
@@ -524,7 +525,7 @@ ControlMesh parse_3mf(std::string_view bytes, const std::string& name, const Not
 
 std::string format_3mf(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
   return package_of(unit_of(mesh, name, notes), name, notes, [&](ModelWriter& model) {
-    model.build(model.add(mesh, std::filesystem::path(name).stem().string()), {});
+    model.build(model.add(mesh, system_files::name_of(system_files::path_of(name).stem())), {});
   });
 }
 

@@ -18,6 +18,7 @@
 #include <support/number.h>
 #include <support/read_file.h>
 #include <support/run.h>
+#include <support/system_files.h>
 #include <support/text_cursor.h>
 
 namespace snug {
@@ -53,7 +54,7 @@ class RobotReader {
       : name_(name),
         xml_(text, name),
         options_(options),
-        folder_(fs::path(path == "-" ? "" : path).parent_path()) {}
+        folder_(system_files::path_of(path == "-" ? "" : path).parent_path()) {}
 
   Robot read() {
     if (xml_.next() != XmlReader::Event::begin || xml_.element() != "robot")
@@ -191,12 +192,13 @@ class RobotReader {
         fail_in_file(name_, what + ": " + in_quotes(filename) + why);
       };
       if (const auto known = options_.packages.find(own); known != options_.packages.end())
-        return (fs::path(known->second) / path_inside(rest, name_, what)).generic_string();
+        return system_files::name_of(system_files::path_of(known->second) /
+                                     system_files::path_of(path_inside(rest, name_, what)));
       const auto all = options_.packages.find("");
       if (all == options_.packages.end())
         fail(" is in a package whose folder is not known: give --package " + one_word(own) +
              "=FOLDER, or in Python packages={'" + one_word(own) + "': FOLDER}");
-      return (fs::path(all->second) / path).generic_string();
+      return system_files::name_of(system_files::path_of(all->second) / system_files::path_of(path));
     }
     std::string path = filename;
     if (filename.starts_with(file)) path = filename.substr(file.size());
@@ -205,10 +207,10 @@ class RobotReader {
     const auto plain = [](const fs::path& of) {
       return (of.empty() ? fs::path(".") : of).lexically_normal();
     };
-    fs::path root = plain(options_.root.empty() ? folder_ : fs::path(options_.root)),
-             place = plain(folder_ / path);
+    fs::path root = plain(options_.root.empty() ? folder_ : system_files::path_of(options_.root)),
+             place = plain(folder_ / system_files::path_of(path));
     // A page has no current folder, and names tell enough but here.
-    if (root.is_absolute() != place.is_absolute() || *root.begin() == "..") {
+    if (root.has_root_path() != place.has_root_path() || *root.begin() == "..") {
       root = fs::absolute(root).lexically_normal();
       place = fs::absolute(place).lexically_normal();
     }
@@ -218,7 +220,7 @@ class RobotReader {
                    what + ": " + in_quotes(filename) +
                        " leads out of the folder of the robot: give the folder that holds all by --root");
     }
-    return (folder_ / path).generic_string();
+    return system_files::name_of(folder_ / system_files::path_of(path));
   }
   static std::string one_word(const std::string& name) {
     const std::string quoted = in_quotes(name);
@@ -231,15 +233,16 @@ class RobotReader {
     const auto key = std::tuple(filename, scale.x, scale.y, scale.z);
     if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
     const std::string place = place_of(filename), shown = printable(place);
-    const fs::path folder = fs::path(place).parent_path();
+    const fs::path folder = system_files::path_of(place).parent_path();
     const auto bytes_of = [&](const std::string& path) {
       return options_.file ? options_.file(path) : read_file(path);
     };
     ControlMesh mesh;
     try {
-      const ReadOptions reading{.notes = options_.notes, .other_file = [&](const std::string& other) {
-                                  return bytes_of((folder / other).generic_string());
-                                }};
+      const ReadOptions reading{
+          .notes = options_.notes, .other_file = [&](const std::string& other) {
+            return bytes_of(system_files::name_of(folder / system_files::path_of(other)));
+          }};
       mesh = parse_mesh(bytes_of(place), shown, reading);
     } catch (const InputError& error) {
       fail_in_file(name_ + ':' + std::to_string(xml_.line()), error.what());
