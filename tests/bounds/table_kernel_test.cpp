@@ -149,7 +149,7 @@ TEST(fit_table, has_the_same_bits_on_every_instruction_set) {
   }
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(names.size(), 2u);
+  EXPECT_GE(names.size(), std::min<std::size_t>(2, hwy::SupportedAndGeneratedTargets().size()));
 }
 
 }  // namespace

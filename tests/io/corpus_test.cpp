@@ -41,10 +41,10 @@ TEST(corpus, every_file_has_one_row) {
   std::multiset<std::string> listed, present;
   for (const Row& row : index_rows()) listed.insert(row.file);
   for (const auto& entry : std::filesystem::directory_iterator(testing::corpus_dir())) {
-    const std::string ending = entry.path().extension();
+    const std::string ending = entry.path().extension().string();
     if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl" || ending == ".usda" ||
         ending == ".glb" || ending == ".gltf" || ending == ".3mf") {
-      present.insert(entry.path().filename());
+      present.insert(entry.path().filename().string());
     }
   }
   EXPECT_GT(listed.size(), 100u);

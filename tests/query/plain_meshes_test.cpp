@@ -263,7 +263,9 @@ TEST(bilinear, points_are_those_of_the_quads) {
       // The quad at this corner, by its vertices' coordinates times 2 size.
       std::array<std::array<mpq_class, 3>, 4> quad;
       for (std::size_t x = 0; x < 3; ++x) {
-        const auto at = [&](std::size_t k) { return mpq_class(corners[(corner + k) % size][x]); };
+        const auto at = [&](std::size_t k) {
+          return mpq_class(static_cast<double>(corners[(corner + k) % size][x]));
+        };
         if (size == 4) {
           for (std::size_t k = 0; k < 4; ++k) quad[k][x] = at(k);
           continue;
@@ -272,7 +274,7 @@ TEST(bilinear, points_are_those_of_the_quads) {
         for (std::size_t k = 0; k < size; ++k) sum += at(k);
         quad[0][x] = at(0);
         quad[1][x] = (at(0) + at(1)) / 2;
-        quad[2][x] = sum / mpq_class(size);
+        quad[2][x] = sum / static_cast<unsigned>(size);
         quad[3][x] = (at(0) + at(size - 1)) / 2;
       }
       for (int i = 0; i < 40; ++i) {
