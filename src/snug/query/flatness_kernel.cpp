@@ -25,9 +25,9 @@ HWY_INLINE V max_abs(const Vec3<V>& a) {
 // The difference is a quadratic over the triangle with the Bezier points gap_k and, between them, the middle of
 // two gaps less twice the bow of the side: the middle of its chord less its curve. Split once in four it lies in the hull of the points below.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void flatness_from(D d, FlatnessLanes& lanes, std::size_t l) {
-  const Vec3<V> origin = load(d, lanes.origin, l), u = load(d, lanes.u, l), v = load(d, lanes.v, l),
-                uu = load(d, lanes.uu, l), uv = load(d, lanes.uv, l), vv = load(d, lanes.vv, l);
+HWY_INLINE void flatness_from(D d, FlatnessLanes& flat, std::size_t l) {
+  const Vec3<V> origin = load(d, flat.origin, l), u = load(d, flat.u, l), v = load(d, flat.v, l),
+                uu = load(d, flat.uu, l), uv = load(d, flat.uv, l), vv = load(d, flat.vv, l);
   const auto times = [&](double s, V x) HWY_ATTR { return hn::Mul(hn::Set(d, s), x); };
   // Of the coefficients' terms, whose roundings are in them.
   V size = hn::Add(hn::Add(hn::Add(times(9, hn::Add(max_abs(u), max_abs(v))), max_abs(uu)), max_abs(vv)),
@@ -35,9 +35,9 @@ HWY_INLINE void flatness_from(D d, FlatnessLanes& lanes, std::size_t l) {
   V at_u[3], at_v[3], gap_sq = hn::Zero(d);
   Vec3<V> gap[3], middle[3], middles;
   for (std::size_t k = 0; k < 3; ++k) {
-    at_u[k] = hn::Load(d, lanes.at[k][0] + l);
-    at_v[k] = hn::Load(d, lanes.at[k][1] + l);
-    const Vec3<V> off = sub(load(d, lanes.corner[k], l), origin);
+    at_u[k] = hn::Load(d, flat.at[k][0] + l);
+    at_v[k] = hn::Load(d, flat.at[k][1] + l);
+    const Vec3<V> off = sub(load(d, flat.corner[k], l), origin);
     size = hn::Max(size, max_abs(off));
     const Vec3<V> curve = add(scaled(at_u[k], add(add(u, scaled(at_u[k], uu)), scaled(at_v[k], uv))),
                               scaled(at_v[k], add(v, scaled(at_v[k], vv))));
@@ -63,16 +63,16 @@ HWY_INLINE void flatness_from(D d, FlatnessLanes& lanes, std::size_t l) {
     see(half, gap[k], middle[(k + 2) % 3]);
     see(quarter, gap[k], middles);
   }
-  hn::Store(hn::Sqrt(gap_sq), d, lanes.corner_gap + l);
+  hn::Store(hn::Sqrt(gap_sq), d, flat.corner_gap + l);
   const V rounding = hn::Add(times(spatial_error(gamma_bound(64) * 4), size), hn::Set(d, tiny)),
-          error = hn::Add(hn::Add(hn::Sqrt(sq), hn::Load(d, lanes.error + l)), rounding);
+          error = hn::Add(hn::Add(hn::Sqrt(sq), hn::Load(d, flat.error + l)), rounding);
   // As enlarged().
-  hn::Store(hn::Add(times(1 + 0x1p-42, error), hn::Set(d, underflow_error)), d, lanes.error + l);
+  hn::Store(hn::Add(times(1 + 0x1p-42, error), hn::Set(d, underflow_error)), d, flat.error + l);
 }
 
-void Flatness(FlatnessLanes& lanes) {
+void Flatness(FlatnessLanes& flat) {
   const hn::CappedTag<double, FlatnessLanes::count> d;
-  for (std::size_t l = 0; l < FlatnessLanes::count; l += hn::Lanes(d)) flatness_from(d, lanes, l);
+  for (std::size_t l = 0; l < FlatnessLanes::count; l += hn::Lanes(d)) flatness_from(d, flat, l);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ namespace snug::kernels {
 
 HWY_EXPORT(Flatness);
 
-void flatness(FlatnessLanes& lanes) { HWY_DYNAMIC_DISPATCH(Flatness)(lanes); }
+void flatness(FlatnessLanes& flat) { HWY_DYNAMIC_DISPATCH(Flatness)(flat); }
 
 }  // namespace snug::kernels
 #endif

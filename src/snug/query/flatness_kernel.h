@@ -16,6 +16,6 @@ struct FlatnessLanes {
 /// Upper bounds of errors, and the largest gaps of corners: Flatness.
 /// Guarantee: the same bits on every instruction set; not finite where a coordinate is not.
 /// Source:    derivations/tessellation.md.
-void flatness(FlatnessLanes& lanes);
+void flatness(FlatnessLanes& flat);
 
 }  // namespace snug::kernels
