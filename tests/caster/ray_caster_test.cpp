@@ -278,6 +278,27 @@ TEST(ray_caster, keeps_to_segments_and_refuses_what_is_none) {
   }
 }
 
+TEST(ray_caster, hits_from_afar_and_with_short_directions) {
+  const Surface surface = sharp_cube();
+  const RayCaster caster(surface, 1e-3);
+  for (const double afar : {1e2, 1e8, 1e12}) {
+    for (const double speed : {1e-161, 1e-150, 1.0, 1e150}) {
+      const Ray ray{{0.5, 0.5, afar}, {0, 0, -speed}};
+      EXPECT_NEAR(caster.cast(ray).t * speed / (afar - 1), 1, 1e-4) << afar << " " << speed;
+      EXPECT_TRUE(caster.blocked(ray)) << afar << " " << speed;
+      EXPECT_EQ(caster.cast({{7, 0.5, afar}, {0, 0, -speed}}).t, infinity) << afar << " " << speed;
+    }
+  }
+  // Where boxes of no child are.
+  for (const double at : {1e29, 1e30, 1e31}) {
+    for (const Vector3& direction : {Vector3{1, -1, 0}, Vector3{1, 1, 1}, Vector3{0, 0, 1}}) {
+      const Ray ray{{at, at, at}, direction, -10, 1e40};
+      EXPECT_FALSE(caster.blocked(ray));
+      EXPECT_EQ(caster.cast(ray).t, infinity);
+    }
+  }
+}
+
 TEST(ray_caster, withstands_every_size) {
   for (const double size : {1e-200, 1e-3, 1e9, 1e200}) {
     ControlMesh mesh = testing::box({0, 0, 0}, {size, size, size}, false);

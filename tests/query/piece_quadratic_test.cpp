@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <random>
 
 namespace snug::piece_quadratic_test {
@@ -138,6 +139,19 @@ TEST(piece_quadratic, the_error_of_the_quadratic_is_part_of_the_bound) {
   EXPECT_LE(PieceQuadratic(c.near, {}).flatness(c.triangle).error, 0.25 * (1 + 0x1p-22));
   c.near.error = INFINITY;
   EXPECT_EQ(PieceQuadratic(c.near, {}).flatness(c.triangle).error, INFINITY);
+}
+
+TEST(piece_quadratic, flatness_is_not_finite_where_a_coordinate_is_not) {
+  std::mt19937_64 random(44);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), static_cast<double>(INFINITY)}) {
+    for (std::size_t k = 0; k < 9; ++k) {
+      Case c = random_case(random);
+      (k < 3 ? c.near.corners[k] : k < 6 ? c.near.middles[k - 3] : c.triangle.corner[k - 6]).y = bad;
+      testing::EachInstructionSet().run([&](const char* name) {
+        EXPECT_EQ(PieceQuadratic(c.near, c.path).flatness(c.triangle).error, INFINITY) << name << " " << k;
+      });
+    }
+  }
 }
 
 TEST(piece_quadratic, bow_is_the_middle_of_the_chord_less_the_curve) {

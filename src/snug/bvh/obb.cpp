@@ -260,6 +260,7 @@ Axes principal_axes(const SomeBoxes<BoxOf>& boxes) {
 // Axes for a box around boxes.
 template <class BoxOf>
 Axes axes_for(const SomeBoxes<BoxOf>& boxes) {
+  SNUG_EXPECT(boxes.count > 0);
   const SomeBoxes<BoxOf> some = boxes.at_most(max_boxes);
   return turned_to_fit(principal_axes(some), some.at_most(max_turned));
 }

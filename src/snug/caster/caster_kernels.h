@@ -50,15 +50,18 @@ struct alignas(64) CasterNode {
   CasterBoxes boxes;
   std::array<std::uint32_t, caster_width> children;
 
-  /// Without children: rays end before their boxes.
+  /// Without children: rays end before their boxes, but for those that begin there.
   static CasterNode empty() {
     CasterNode node{};
     for (std::size_t k = 0; k < 3; ++k) {
       node.boxes.lower[k].fill(1e30F);
       node.boxes.upper[k].fill(1e30F);
     }
+    node.children.fill(no_child);
     return node;
   }
+  /// Of a tree that is being made; then the name of a block without triangles.
+  static constexpr std::uint32_t no_child = 0xffffffffu;
 };
 inline constexpr std::uint32_t caster_leaf_bit = 0x80000000u;
 

@@ -216,6 +216,10 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
   } else {
     static_cast<void>(builder.fill(0, pieces.size(), name));
   }
+  const std::uint32_t nothing = static_cast<std::uint32_t>(blocks_.size()) | kernels::caster_leaf_bit;
+  blocks_.emplace_back();
+  for (kernels::CasterNode& node : nodes_)
+    std::replace(node.children.begin(), node.children.end(), kernels::CasterNode::no_child, nothing);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();
   places_.shrink_to_fit();
@@ -231,9 +235,10 @@ struct CasterTree::Approach {
   // Does the ray's line pass by the ball around everything? Most rays of a picture do, which need no root then.
   static bool passes_ball(const CasterTree& tree, const Ray& ray) {
     const Vector3 ahead = tree.centre_ - tree.surface_->scale().apply(ray.origin);
-    const double along = dot(ray.direction, ahead);
-    return (length_sq(ahead) - 1.001 * tree.radius_ * tree.radius_) * length_sq(ray.direction) >
-           along * along;
+    const double along = dot(ray.direction, ahead), square = length_sq(ray.direction);
+    // Squares of shorter ones lose digits, and those of lengths from afar what the ball is large.
+    if (!(square > 0x1p-900)) return false;
+    return (length_sq(ahead) * (1 - 0x1p-44) - 1.001 * tree.radius_ * tree.radius_) * square > along * along;
   }
   Approach(const CasterTree& tree, const Ray& ray)
       : lengths(ray.direction, tree.surface_->scale()), direction(lengths.unit(ray.direction)) {

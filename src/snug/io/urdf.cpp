@@ -210,7 +210,7 @@ class RobotReader {
     fs::path root = plain(options_.root.empty() ? folder_ : system_files::path_of(options_.root)),
              place = plain(folder_ / system_files::path_of(path));
     // A page has no current folder, and names tell enough but here.
-    if (root.has_root_path() != place.has_root_path() || *root.begin() == "..") {
+    if (root.root_path() != place.root_path() || *root.begin() == "..") {
       root = fs::absolute(root).lexically_normal();
       place = fs::absolute(place).lexically_normal();
     }

@@ -32,6 +32,9 @@ HWY_INLINE void flatness_from(D d, FlatnessLanes& flat, std::size_t l) {
   // Of the coefficients' terms, whose roundings are in them.
   V size = hn::Add(hn::Add(hn::Add(times(9, hn::Add(max_abs(u), max_abs(v))), max_abs(uu)), max_abs(vv)),
                    times(4, max_abs(uv)));
+  // Not a number where one of these is not finite: maxima may pass over that.
+  const auto total = [](const Vec3<V>& a) HWY_ATTR { return hn::Add(hn::Add(a.x, a.y), a.z); };
+  V sum = total(add(add(add(origin, u), add(v, uu)), add(uv, vv)));
   V at_u[3], at_v[3], gap_sq = hn::Zero(d);
   Vec3<V> gap[3], middle[3], middles;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -39,6 +42,7 @@ HWY_INLINE void flatness_from(D d, FlatnessLanes& flat, std::size_t l) {
     at_v[k] = hn::Load(d, flat.at[k][1] + l);
     const Vec3<V> off = sub(load(d, flat.corner[k], l), origin);
     size = hn::Max(size, max_abs(off));
+    sum = hn::Add(sum, total(off));
     const Vec3<V> curve = add(scaled(at_u[k], add(add(u, scaled(at_u[k], uu)), scaled(at_v[k], uv))),
                               scaled(at_v[k], add(v, scaled(at_v[k], vv))));
     gap[k] = sub(curve, off);
@@ -65,7 +69,8 @@ HWY_INLINE void flatness_from(D d, FlatnessLanes& flat, std::size_t l) {
   }
   hn::Store(hn::Sqrt(gap_sq), d, flat.corner_gap + l);
   const V rounding = hn::Add(times(spatial_error(gamma_bound(64) * 4), size), hn::Set(d, tiny)),
-          error = hn::Add(hn::Add(hn::Sqrt(sq), hn::Load(d, flat.error + l)), rounding);
+          error = hn::Add(hn::Add(hn::Sqrt(sq), hn::Load(d, flat.error + l)),
+                          hn::Add(rounding, hn::Sub(sum, sum)));
   // As enlarged().
   hn::Store(hn::Add(times(1 + 0x1p-42, error), hn::Set(d, underflow_error)), d, flat.error + l);
 }
