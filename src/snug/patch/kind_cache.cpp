@@ -318,7 +318,7 @@ const std::vector<KindChild>& Kind::children() const {
 
 const Kind& KindCache::find(const KindKey& key) {
   {
-    const std::shared_lock lock(mutex_);
+    const SharedLock lock(mutex_);
     if (const auto it = kinds_.find(key); it != kinds_.end()) return *it->second;
   }
   const std::unique_lock lock(mutex_);
@@ -330,7 +330,7 @@ const Kind& KindCache::find(const KindKey& key) {
 }
 
 std::size_t KindCache::size() const {
-  const std::shared_lock lock(mutex_);
+  const SharedLock lock(mutex_);
   return kinds_.size();
 }
 

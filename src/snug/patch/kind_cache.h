@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <unordered_map>
@@ -147,7 +148,15 @@ class KindCache {
   [[nodiscard]] std::size_t size() const;
 
  private:
-  mutable std::shared_mutex mutex_;
+#ifdef __MINGW32__
+  // winpthreads lets shared and exclusive locks in together, and two exclusive ones: thirty of a thousand new mutexes, four threads.
+  using Mutex = std::mutex;
+  using SharedLock = std::unique_lock<std::mutex>;
+#else
+  using Mutex = std::shared_mutex;
+  using SharedLock = std::shared_lock<std::shared_mutex>;
+#endif
+  mutable Mutex mutex_;
   std::unordered_map<KindKey, std::unique_ptr<Kind>, KindKeyHash> kinds_;
 };
 
