@@ -317,11 +317,7 @@ const std::vector<KindChild>& Kind::children() const {
 }
 
 const Kind& KindCache::find(const KindKey& key) {
-  {
-    const SharedLock lock(mutex_);
-    if (const auto it = kinds_.find(key); it != kinds_.end()) return *it->second;
-  }
-  const std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   const auto it = kinds_.find(key);
   if (it != kinds_.end()) return *it->second;
   // Whole before others find it: making one may run out of memory.
@@ -330,7 +326,7 @@ const Kind& KindCache::find(const KindKey& key) {
 }
 
 std::size_t KindCache::size() const {
-  const SharedLock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   return kinds_.size();
 }
 

@@ -3,7 +3,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <shared_mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -148,15 +147,7 @@ class KindCache {
   [[nodiscard]] std::size_t size() const;
 
  private:
-#ifdef __MINGW32__
-  // winpthreads lets shared and exclusive locks in together, and two exclusive ones: thirty of a thousand new mutexes, four threads.
-  using Mutex = std::mutex;
-  using SharedLock = std::unique_lock<std::mutex>;
-#else
-  using Mutex = std::shared_mutex;
-  using SharedLock = std::shared_lock<std::shared_mutex>;
-#endif
-  mutable Mutex mutex_;
+  mutable std::mutex mutex_;
   std::unordered_map<KindKey, std::unique_ptr<Kind>, KindKeyHash> kinds_;
 };
 
