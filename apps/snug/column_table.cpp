@@ -3,22 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <string_view>
 
 #include <support/binary.h>
 #include <support/contract.h>
-#include <support/number.h>
 #include <support/system_files.h>
 
 namespace snug {
 namespace {
-
-std::string ending_of(const std::string& path) {
-  std::string ending = system_files::name_of(system_files::path_of(path).extension());
-  std::ranges::transform(ending, ending.begin(), lower_case);
-  return ending;
-}
 
 void append_csv(std::string& text, double value) {
   if (std::isnan(value)) {
@@ -66,7 +58,7 @@ std::string csv_head(const Columns& columns) {
 }  // namespace
 
 ColumnTable::ColumnTable(std::vector<Column> columns, const std::string& path)
-    : columns_(std::move(columns)), ending_(ending_of(path)) {
+    : columns_(std::move(columns)), ending_(system_files::ending_of(path)) {
   SNUG_EXPECT(is_table(path) && !columns_.empty());
 }
 
@@ -94,7 +86,7 @@ std::string ColumnTable::file() const {
 }
 
 bool ColumnTable::is_table(const std::string& path) {
-  const std::string ending = ending_of(path);
+  const std::string ending = system_files::ending_of(path);
   return ending == ".npy" || ending == ".ply" || ending == ".csv";
 }
 

@@ -9,7 +9,6 @@
 #include <support/system_files.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "answer_writer.h"
 #include "common.h"
@@ -43,7 +42,7 @@ double error_of(const Options& options, const Surface& surface) {
 std::string name_of_part(const Options& options) {
   if (!options.name.empty()) return options.name;
   const std::string& file = options.scene.empty() ? options.mesh : options.scene;
-  return file == "-" ? "part" : system_files::name_of(system_files::path_of(file).stem());
+  return file == "-" ? "part" : system_files::stem_of(file);
 }
 
 std::string number_of(std::size_t count, const char* word) {
@@ -142,7 +141,7 @@ Job read_all(const Options& options, const WorkMonitor& monitor) {
       [&](const std::string& path) { return read_file(path, monitor); }, monitor);
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     const std::string& file = scene.text.meshes[i].file;
-    job.add(file, scene.surfaces[i], system_files::name_of(system_files::path_of(file).stem()));
+    job.add(file, scene.surfaces[i], system_files::stem_of(file));
   }
   for (const SceneText::Part& part : scene.text.parts) job.parts.push_back({part.name, part.mesh, part.pose});
   return job;

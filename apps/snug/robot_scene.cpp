@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <optional>
 
@@ -93,8 +92,7 @@ std::vector<std::vector<double>> read_path(const Robot& robot, const Options& op
 
 // What other commands take by --scene.
 void refuse_scenes(const std::string& path) {
-  std::string ending = system_files::name_of(system_files::path_of(path).extension());
-  std::ranges::transform(ending, ending.begin(), lower_case);
+  const std::string ending = system_files::ending_of(path);
   for (const char* const scene : {".json", ".3mf", ".gltf", ".glb", ".usda"}) {
     if (ending != scene) continue;
     throw UsageError(

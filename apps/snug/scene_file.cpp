@@ -373,8 +373,7 @@ namespace {
 
 // Formats that place several meshes.
 bool is_assembly(const std::string& path) {
-  std::string ending = system_files::name_of(system_files::path_of(path).extension());
-  for (char& c : ending) c = lower_case(c);
+  const std::string ending = system_files::ending_of(path);
   for (const char* known :
        {".gltf", ".glb", ".3mf", ".usda", ".usd", ".dae", ".fbx", ".3ds", ".blend", ".lwo", ".x"}) {
     if (ending == known) return true;

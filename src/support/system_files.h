@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+
+#include <support/number.h>
 
 /// Files as POSIX and Windows have them: names are UTF-8 of any length, nothing is translated in text. Functions return what
 /// POSIX's do, -1 with errno on failure.
@@ -56,6 +59,14 @@ void sync_folder(const std::string& folder);
 [[nodiscard]] std::filesystem::path path_of(const std::string& name);
 /// Its name, with `/`.
 [[nodiscard]] std::string name_of(const std::filesystem::path& path);
+/// The last part of a name, without its extension.
+[[nodiscard]] inline std::string stem_of(const std::string& name) { return name_of(path_of(name).stem()); }
+/// The extension with its dot, letters of ASCII in lower case.
+[[nodiscard]] inline std::string ending_of(const std::string& name) {
+  std::string ending = name_of(path_of(name).extension());
+  std::ranges::transform(ending, ending.begin(), lower_case);
+  return ending;
+}
 /// With `/`, or "." for a bare name.
 [[nodiscard]] std::string folder_of(const std::string& path);
 

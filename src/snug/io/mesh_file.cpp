@@ -2,7 +2,6 @@
 #include <snug/scene.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -20,16 +19,10 @@
 namespace snug {
 namespace {
 
-std::string lower_ending(const std::string& path) {
-  std::string ending = system_files::name_of(system_files::path_of(path).extension());
-  std::ranges::transform(ending, ending.begin(), lower_case);
-  return ending;
-}
-
 /// The lower-case ending of a name, which is its format; refused if it is not among those known.
 std::string format_among(std::initializer_list<std::string_view> known, const std::string& path,
                          const char* what) {
-  std::string ending = lower_ending(path);
+  std::string ending = system_files::ending_of(path);
   if (std::ranges::find(known, ending) == known.end()) {
     throw InputError(InputProblem::unreadable, path + ": meshes are " + what + " files only");
   }
@@ -87,7 +80,7 @@ bool by_assimp(std::string_view ending) {
 
 /// The ending that names the format to read; empty for none.
 std::string format_to_read(const std::string& path) {
-  if (std::string ending = lower_ending(path); by_assimp(ending)) return ending;
+  if (std::string ending = system_files::ending_of(path); by_assimp(ending)) return ending;
   return format_among(
       {"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb", ".gltf", ".3mf"}, path,
       "read from .obj, .off, .ply, .stl, .usda, .glb, .gltf and .3mf");
@@ -201,7 +194,7 @@ MeshAssembly parse_assembly(std::string_view bytes, const std::string& path, con
     result = assembled(std::move(*parts), name, options.notes);
   } else {
     result.meshes.push_back(parsed(bytes, ending, name, options));
-    result.parts.push_back({system_files::name_of(system_files::path_of(name).stem()), 0, {}});
+    result.parts.push_back({system_files::stem_of(name), 0, {}});
   }
   for (ControlMesh& mesh : result.meshes) finish(mesh, name, options);
   return result;
@@ -242,7 +235,7 @@ std::string format_mesh(const ControlMesh& mesh, const std::string& path, const 
 
 std::string format_assembly(const MeshAssembly& assembly, const std::string& path,
                             const WriteOptions& options, const Run& run) {
-  if (lower_ending(path) != ".3mf") {
+  if (system_files::ending_of(path) != ".3mf") {
     throw InputError(InputProblem::unreadable,
                      path + ": parts in their places are written to .3mf files only");
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -525,7 +524,7 @@ ControlMesh parse_3mf(std::string_view bytes, const std::string& name, const Not
 
 std::string format_3mf(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
   return package_of(unit_of(mesh, name, notes), name, notes, [&](ModelWriter& model) {
-    model.build(model.add(mesh, system_files::name_of(system_files::path_of(name).stem())), {});
+    model.build(model.add(mesh, system_files::stem_of(name)), {});
   });
 }
 

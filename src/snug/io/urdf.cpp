@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a joint names before all links are known.
+/// Names in a joint before all links are known.
 struct JointNames {
   std::string parent, child, mimic;
   std::size_t line;
