@@ -15,7 +15,7 @@
 
 namespace snug::command {
 
-/// What the places of an answer lie on: nothing, a surface, or A and B.
+/// The surfaces that places of an answer lie on: none, one, or A and B.
 using On = std::span<const PlacedSurface>;
 
 /// Fields of an answer, named and in the order of <snug/fields.h>, into the object that is open; but for one of this name.

@@ -12,7 +12,7 @@
 
 namespace snug::command {
 
-/// What blanks or commas separate.
+/// The words between blanks or commas.
 [[nodiscard]] std::vector<std::string> words_of(const std::string& text);
 
 /// Where one mesh stands, as its options say it.

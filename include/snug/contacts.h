@@ -61,7 +61,7 @@ struct IntersectionCurve {
   std::uint32_t region = 0;
 };
 
-/// What a facet of A and one of B (self_contact() says which are) that touch have in common, exactly for the doubles of meshes and poses.
+/// The common part of a facet of A and one of B (self_contact() says which are) that touch, exactly for the doubles of meshes and poses.
 struct ContactArea {
   std::vector<Point3> points;  ///< of a convex polygon, as the corners of A's face run; a segment; a point
   double error = 0;  ///< upper bound, a coordinate, of how far they are from the exact ones; often 0

@@ -23,7 +23,7 @@
 #include <snug/tessellate.h>
 #include <snug/time_of_contact.h>
 
-/// What answers hold: names, order and a sentence each, once for the command's JSON, the Python module, the JavaScript package and their
+/// Fields of answers: names, order and a sentence each, once for the command's JSON, the Python module, the JavaScript package and their
 /// declarations. Programs in C++ do not need this header; a program that makes another door of snug does.
 namespace snug {
 
@@ -45,7 +45,7 @@ inline constexpr std::tuple<> fields_of{};
 template <class Answer>
 inline constexpr bool has_fields = std::tuple_size_v<std::remove_cv_t<decltype(fields_of<Answer>)>> != 0;
 
-/// What `field` is of an answer, without reference.
+/// The type of a field of an answer, without reference.
 template <class Answer, class Of>
 using FieldValue = std::remove_cvref_t<std::invoke_result_t<Of, const Answer&>>;
 
@@ -367,7 +367,7 @@ inline constexpr auto fields_of<SurfacePoint> = std::tuple{
           "Upper bound of |normal - exact normal|, where one is proved."},
 };
 
-// What is in a mesh.
+// Answers about a mesh.
 
 template <>
 inline constexpr auto fields_of<Defect> = std::tuple{
@@ -404,7 +404,7 @@ inline constexpr auto fields_of<Coincidences> = std::tuple{
     Field{"reach", &Coincidences::reach, "2^-17 of the longest side of the box around the mesh."},
 };
 
-// What is made from a surface.
+// Answers that are made from a surface.
 
 template <>
 inline constexpr auto fields_of<BoundSummary> = std::tuple{

@@ -188,7 +188,7 @@ struct MeshAssembly {
 [[nodiscard]] SNUG_API MeshAssembly parse_assembly(std::string_view bytes, const std::string& path,
                                                    const ReadOptions& options = {});
 
-/// What the format of a file holds, by its extension.
+/// Contents of a file format, by its extension.
 struct MeshFormat {
   bool polygons;  ///< faces other than triangles
   bool floats;    ///< coordinates in single precision only

@@ -12,7 +12,7 @@
 
 namespace snug {
 
-/// What is wrong with an input.
+/// Kinds of problems with an input.
 enum class InputProblem {
   unreadable,       ///< a file that cannot be opened, read, written or parsed
   refused,          ///< a mesh that is defective or not supported
@@ -76,7 +76,7 @@ struct Run {
   Certificate* certificate = nullptr;
 };
 
-/// What Run::max_splits is if it is not given, in the unit that each function names under "Budget".
+/// Defaults of Run::max_splits, in the unit that each function names under "Budget".
 namespace default_splits {
 inline constexpr std::uint64_t brep = 10'000'000, ray = 20'000, penetration = 20'000, contacts = 200'000,
                                bound = 1'000'000, closest_point = 1'000'000, collide = 1'000'000,

@@ -48,7 +48,7 @@ class SNUG_API Trajectory {
   /// Starts at a pose and moves for one unit of time. Any number of turns.
   /// Errors:    InputError (value) for numbers that are not finite and for an axis of length 0.
   [[nodiscard]] static Trajectory steady(const Motion& from, const SteadyMotion& motion);
-  /// What a chain of joints moves: `tip` is its pose in the frame that the last joint moves. In each unit of time every joint
+  /// The motion of the end of a chain of joints: `tip` is its pose in the frame that the last joint moves. In each unit of time every joint
   /// goes at a constant speed from its position in one list to that in the next: radians, or a length.
   /// Errors:    InputError: (value) for no positions, lists that are not as long as the chain, numbers that are not finite,
   ///            more than 1e8 turns, an axis of length 0; (pose), (unrepresentable) if a pose does not fit doubles.

@@ -14,7 +14,7 @@
 
 namespace snug {
 
-/// What kernels read of the kind of a part of a patch: a polynomial, or a tip, the piece at one extraordinary corner, whose kind
+/// Rows that kernels read of the kind of a part of a patch: a polynomial, or a tip, the piece at one extraordinary corner, whose kind
 /// comes again at every level.
 struct PartRows {
   const Kind* kind;

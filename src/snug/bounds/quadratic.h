@@ -25,7 +25,7 @@ struct QuadraticTriangle {
   double normal_error = 0;  ///< |dot(normal, patch(t) - quadratic(t))| <= normal_error for all t
 };
 
-/// What a caller makes of an error: one of at most `sufficient` need not be less, and one above `useless` may as well be infinite.
+/// The errors that matter to a caller: one of at most `sufficient` need not be less, and one above `useless` may as well be infinite.
 struct ErrorUse {
   double sufficient = 0, useless = INFINITY;
 };

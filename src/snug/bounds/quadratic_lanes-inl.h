@@ -90,7 +90,7 @@ HWY_INLINE void gather(std::size_t here, const PatchOf& patch_of, const Lanes& t
   }
 }
 
-// What is known of the points whose hull contains a part, in its patch's frame. `margin`: of distance_sq().
+// Bounds of the points whose hull contains a part, in its patch's frame. `margin`: of distance_sq().
 template <class D, class V = hn::Vec<D>>
 class HullV {
  public:

@@ -111,7 +111,7 @@ constexpr std::size_t turn_count = 8;
 struct Turns {
   std::array<float, turn_count> cosine, sine;
 };
-// What boxes take of two axes after each turn; not exact.
+// Extents of boxes along two axes after each turn; not exact.
 struct Sides {
   std::array<float, turn_count> first, second;
 };

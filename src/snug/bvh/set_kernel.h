@@ -18,7 +18,7 @@ struct SetTriangle {
 };
 [[nodiscard]] SetTriangle triangle_of(const FittedSet& set);
 
-/// What a set takes of three axes, nearly: for choices.
+/// Extents of a set along three axes, nearly: for choices.
 struct alignas(16) SetSides {
   /// How far against each axis, and along it, with a place between that is not used: in vectors of four.
   std::array<float, 8> reach{-INFINITY, -INFINITY, -INFINITY, 0, -INFINITY, -INFINITY, -INFINITY, 0};

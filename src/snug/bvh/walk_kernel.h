@@ -19,7 +19,7 @@ struct TreeView {
   float slack;  ///< taken off from gaps, besides what roundings do to them
   float reach;  ///< of the translation: the sum of its sizes
 };
-/// What roundings of a walk do to a gap, at most, as a part of all that is involved.
+/// The most that roundings of a walk change a gap by, as a part of all that is involved.
 inline constexpr float walk_roundings = 80 * 0x1p-24F;
 
 /// A tree that is walked down.

@@ -46,7 +46,7 @@ class CertificateWriter {
   /// A limit point of a surface lies in the other one's solid. False if no proof was found.
   bool solids_meet(std::size_t side, const Place& at);
 
-  /// What is claimed so far of the last question or pair; and the same of another one about the same.
+  /// Claims so far of the last question or pair; and the same of another one about the same.
   [[nodiscard]] std::string claims() const { return text_.substr(claims_); }
   void add_claims(const std::string& claims) { text_ += claims; }
 

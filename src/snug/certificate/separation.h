@@ -21,7 +21,7 @@ struct CertifiedSide {
 [[nodiscard]] CertifiedSide side_of(NetRange& pieces, const Motion& pose);
 [[nodiscard]] CertifiedSide side_of(std::vector<Point3> points, std::optional<Vector3> direction = {});
 
-/// What a search for a proof may cost, and what stops it.
+/// The budget of a search for a proof, and its monitor.
 struct ProofLimits {
   std::size_t leaves;
   const WorkMonitor& monitor;

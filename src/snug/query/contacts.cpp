@@ -405,7 +405,7 @@ class ContactsSearch {
     }
   }
 
-  // What plane faces have in common.
+  // Common parts of plane faces.
   void add_facets() {
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
       if (near_[i].facets != nullptr && near_[i].kept)

@@ -13,7 +13,7 @@
 
 namespace snug {
 
-/// What a thread keeps of the pieces of a surface that is compared with itself, which are bounded by rows.
+/// The memory that a thread keeps for pieces of a surface that is compared with itself, which are bounded by rows.
 inline constexpr std::size_t max_bytes_of_self = std::size_t{64} << 20;
 [[nodiscard]] inline PieceCache pieces_of_self(const SurfaceBvh& model) { return PieceCache(model, 0, true); }
 

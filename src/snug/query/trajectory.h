@@ -13,7 +13,7 @@ namespace snug {
 /// Upper bound of the length of every vector in three intervals.
 [[nodiscard]] double length_up(const std::array<Interval, 3>& vector);
 
-/// What the frames of a chain may stretch lengths by, up to some roundings.
+/// The most that frames of a chain may stretch lengths by, up to some roundings.
 [[nodiscard]] double stretch_of(const Trajectory::Piece& chain);
 
 /// A pose in double precision, and upper bounds of what its numbers differ by from the one that is meant.

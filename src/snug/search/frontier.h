@@ -18,7 +18,7 @@ enum class Order : std::uint8_t {
   nearest_first,  ///< the least `gap` first: few looks
 };
 
-/// What a question has still to look at: nodes, or pairs of them, each with a lower bound `gap` of what is asked for.
+/// Work that is left of a question: nodes, or pairs of them, each with a lower bound `gap` of what is asked for.
 template <class Item>
 class Frontier {
  public:
@@ -75,7 +75,7 @@ class Frontier {
   std::size_t first_ = 0, end_ = 0;
 };
 
-/// What becomes of an item that a question has looked at.
+/// Decisions about an item that a question has looked at.
 enum class Verb : std::uint8_t {
   drop,  ///< all of it is decided
   open,  ///< what it consists of is to be looked at

@@ -20,7 +20,7 @@ class PairWalk {
     return scale_[side] * pair.nodes[side].size();
   }
 
-  /// What a query with this budget of splits may do with a pair.
+  /// Whether a query with this budget of splits may open a pair.
   enum class May : std::uint8_t {
     open,
     not_open,  ///< neither node can be opened

@@ -12,7 +12,7 @@
 
 namespace snug {
 
-/// What two triangles have in common beside the vertices that both name and the edge between two of these; or one with itself.
+/// The common part of two triangles beside the vertices that both name and the edge between two of these; or one with itself.
 enum class TriangleContact : std::uint8_t {
   none,
   crossing,     ///< a segment inside of both, where they pass through each other

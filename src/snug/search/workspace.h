@@ -26,7 +26,7 @@ class Workspace::Pieces {
 
   /// For the other threads of a run.
   [[nodiscard]] std::vector<Workspace>& of_other_threads() { return of_other_threads_; }
-  /// What a question keeps for later ones besides pieces: of one type for each purpose, made on first use.
+  /// Data that a question keeps for later ones besides pieces: of one type for each purpose, made on first use.
   enum class Kept : std::uint8_t { collisions, distances };
   template <class T>
   [[nodiscard]] T& kept(Kept purpose) {

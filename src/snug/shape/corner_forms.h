@@ -10,7 +10,7 @@
 
 namespace snug {
 
-/// What is known of a small piece: that its area is between these, and the integral of x_u cross x_v.
+/// Bounds of the area of a small piece, and the integral of x_u cross x_v.
 struct PieceArea {
   double lower, upper;
   Vector3 flux;

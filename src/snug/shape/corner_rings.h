@@ -29,7 +29,7 @@ class RingValues {
   [[nodiscard]] std::size_t count() const { return further_.size() - 1; }
   /// Makes levels known up to so many.
   void descend_to(std::size_t count);
-  /// What all further levels add, in extents: to a level's values, and to the growth of a chain.
+  /// Sums over all further levels, in extents: added to a level's values, and to the growth of a chain.
   struct Sums {
     double net = 0, chain = 0;
   };
@@ -67,7 +67,7 @@ class CornerRings {
   CornerRings(const RingDecay& decay, const Patch& values);
   /// How many levels it is of use to look at; at least one.
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// What the coordinates of a level's nets are of values: dot products with these, up to `axis_off` in each number, over a positive
+  /// The axes of a level's nets: coordinates are dot products of values with these, up to `axis_off` in each number, over a positive
   /// factor. They turn left.
   [[nodiscard]] std::array<Point2, 2> axes(std::size_t level) const;
   [[nodiscard]] double axis_off() const { return axis_off_; }  ///< relative to the axis

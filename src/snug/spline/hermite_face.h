@@ -53,7 +53,7 @@ class HermiteFace {
   /// Splits until the face is so near to the limit surface, or spans would be too many. True if it is that near.
   bool refine(double error, std::size_t most_spans);
   [[nodiscard]] std::size_t spans() const { return (u_.size() - 1) * (v_.size() - 1); }
-  /// What it consists of; distances are bounds.
+  /// Its parts; distances are bounds.
   [[nodiscard]] std::vector<FacePart> parts();
 
  private:

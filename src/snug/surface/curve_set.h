@@ -8,7 +8,7 @@
 
 namespace snug {
 
-/// What a CurveSet holds. Inside, coordinates are scaled as those of a LimitSurface.
+/// The contents of a CurveSet. Inside, coordinates are scaled as those of a LimitSurface.
 class CurveSet::Edges {
  public:
   Edges(ControlMesh mesh, CurveDegree degree);
