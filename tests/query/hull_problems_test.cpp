@@ -1,4 +1,4 @@
-#include <snug/query/hull.h>
+#include <snug/query/hull_check.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>

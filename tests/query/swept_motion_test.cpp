@@ -27,7 +27,7 @@ PieceMotion chain_of(std::mt19937_64& random) {
   std::vector<ChainJoint> chain(1 + random() % 6);
   std::vector<std::vector<double>> positions(2);
   for (ChainJoint& joint : chain) {
-    joint.frame = random_placement(random, random_vector(random, random() % 3));
+    joint.frame = random_placement(random, random_vector(random, static_cast<double>(random() % 3)));
     joint.axis = random_vector(random, 1);
     joint.slides = random() % 3 == 0;
     positions[0].push_back(3 * unit(random));
