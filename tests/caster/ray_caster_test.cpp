@@ -3,6 +3,7 @@
 #include <snug/snug.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -54,6 +55,17 @@ std::vector<Ray> rays_around(const Surface& surface, std::size_t count) {
     }
   }
   return rays;
+}
+
+ControlMesh octahedron() {
+  ControlMesh mesh;
+  mesh.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    const VertexId x(octant & 1), y(2 + (octant >> 1 & 1)), z(4 + (octant >> 2));
+    const bool odd = std::popcount(octant) % 2 != 0;
+    mesh.add_face(std::array{x, odd ? z : y, odd ? y : z});
+  }
+  return mesh;
 }
 
 // Two cones base to base: needles around their tips.
@@ -174,19 +186,22 @@ TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
   EXPECT_GT(worst, 0);
 }
 
-// Flat patches side by side, whose boxes are as flat, from above, from below and aslant: rays at corners, sides and between.
-TEST(ray_caster, leaves_no_gap_between_flat_patches) {
-  constexpr std::uint32_t faces = 20;
+// Flat patches side by side, each of size `side`.
+Surface flat_patches(std::uint32_t faces, double side) {
   ControlMesh mesh;
-  for (std::uint32_t i = 0; i < (faces + 1) * (faces + 1); ++i) {
-    mesh.points.push_back({static_cast<double>(i % (faces + 1)), static_cast<double>(i / (faces + 1)), 0});
-  }
+  for (std::uint32_t i = 0; i < (faces + 1) * (faces + 1); ++i)
+    mesh.points.push_back({side * (i % (faces + 1)), side * (i / (faces + 1)), 0});
   for (std::uint32_t i = 0; i < faces * faces; ++i) {
     const std::uint32_t at = i / faces * (faces + 1) + i % faces;
     mesh.add_face(
         std::array{VertexId(at), VertexId(at + 1), VertexId(at + faces + 2), VertexId(at + faces + 1)});
   }
-  const Surface surface(std::move(mesh));
+  return Surface(std::move(mesh));
+}
+
+// Their boxes are as flat: from above, from below and aslant, rays at corners, sides and between.
+TEST(ray_caster, leaves_no_gap_between_flat_patches) {
+  const Surface surface = flat_patches(20, 1);
   const RayCaster caster(surface, 1e-6);
   for (const Vector3& d : {Vector3{0, 0, -1}, Vector3{0.6, 0.3, 2}, Vector3{-3, 1, -0.1}, Vector3{0, 1, 1}}) {
     for (int i = 8; i <= 72; ++i) {
@@ -196,6 +211,26 @@ TEST(ray_caster, leaves_no_gap_between_flat_patches) {
         ASSERT_NEAR(caster.cast(ray).t, 40, 1e-2) << i << ' ' << j << ' ' << d.x;
         ASSERT_TRUE(caster.blocked(ray)) << i << ' ' << j << ' ' << d.x;
         ASSERT_FALSE(caster.blocked({ray.origin, d, 40.1, 80})) << i << ' ' << j << ' ' << d.x;
+      }
+    }
+  }
+}
+
+// Pieces are off by their errors, each its own way: no ray from inside gets out between them or their boxes.
+TEST(ray_caster, leaves_no_gap_between_pieces) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> share(-1, 1);
+  for (const Scheme scheme : {Scheme::catmark, Scheme::loop, Scheme::doo_sabin}) {
+    const Surface surface(
+        scheme == Scheme::loop ? octahedron() : testing::box({-1, -1, -1}, {1, 1, 1}, false),
+        {.scheme = scheme});
+    for (const double tolerance : {0.1, 0.03, 0.01, 0.001}) {
+      const RayCaster caster(surface, tolerance * surface.size());
+      for (int i = 0; i < 20'000; ++i) {
+        const Ray ray{{0.1 * share(random), 0.1 * share(random), 0.1 * share(random)},
+                      {share(random), share(random), share(random)}};
+        ASSERT_TRUE(std::isfinite(caster.cast(ray).t)) << name_of(scheme) << ' ' << tolerance << ' ' << i;
+        ASSERT_TRUE(caster.blocked(ray)) << name_of(scheme) << ' ' << tolerance << ' ' << i;
       }
     }
   }
