@@ -778,8 +778,8 @@ TEST(star, whose_side_lies_over_its_crease_is_never_injective) {
   int injective = 0, turned = 0;
   for (int trial = 0; trial < static_cast<int>(testing::fewer(200)); ++trial) {
     const bool triangles = random() % 3 != 0;
-    const std::uint32_t side = triangles ? 6 + random() % 3 : 4 + random() % 2, n = 2 * side,
-                        around = triangles ? n : 2 * n;
+    const auto side = static_cast<std::uint32_t>(triangles ? 6 + random() % 3 : 4 + random() % 2);
+    const std::uint32_t n = 2 * side, around = triangles ? n : 2 * n;
     const auto flat = [](double, double) { return 0.0; };
     auto mesh = triangles ? disc(n, 1, flat) : quad_disc(n, flat);
     if (random() % 3 == 0) mesh.corners.push_back({0, 10});
