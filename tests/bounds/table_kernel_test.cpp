@@ -1,13 +1,11 @@
-
 #include <gtest/gtest.h>
 #include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/table_triangle.h>
 #include <testing/counts.h>
+#include <testing/instruction_sets.h>
 #include <testing/kinds.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>
-
-#include <hwy/targets.h>
 
 #include <bit>
 #include <cmath>
@@ -136,20 +134,18 @@ TEST(fit_table, has_the_same_bits_on_every_instruction_set) {
   };
   const std::vector<double> expected = everything();
   std::set<std::string> names;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  testing::EachInstructionSet().run([&](const char* name) {
     const std::vector<double> found = everything();
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_EQ(std::bit_cast<std::uint64_t>(found[i]), std::bit_cast<std::uint64_t>(expected[i]))
-          << kernels::instruction_set() << " " << i;
+          << name << " " << i;
     }
     names.insert(kernels::instruction_set());
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(names.size(), std::min<std::size_t>(2, hwy::SupportedAndGeneratedTargets().size()));
+  });
+#ifdef __x86_64__  // elsewhere they may be fixed when the library is compiled
+  EXPECT_GE(names.size(), 2u);
+#endif
 }
 
 }  // namespace

@@ -812,7 +812,7 @@ TEST(star, whose_side_lies_over_its_crease_is_never_injective) {
   }
   std::printf("injective %d, turned %d\n", injective, turned);
   EXPECT_GT(injective, static_cast<int>(testing::fewer(100)));
-  EXPECT_GT(turned, static_cast<int>(testing::fewer(10)));
+  EXPECT_GT(turned, testing::slow ? 0 : 10);
 }
 
 // Triangles of Midedge and other faces of dual schemes: the slowest parts at their middles differ from level to level.

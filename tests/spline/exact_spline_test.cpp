@@ -217,7 +217,7 @@ TEST(exact_spline, regular_triangles_are_within_their_bounds) {
   std::size_t points = 0;
   double ratio = 0;
   std::size_t faces = 0;
-  for (std::uint64_t number = 0; number < testing::number_of("SNUG_EXACT_SPLINES", 4) / 2; ++number) {
+  for (std::uint64_t number = 0; 2 * number < testing::number_of("SNUG_EXACT_SPLINES", 4); ++number) {
     oracle::TaggedMesh mesh = lattice_of(true, random);
     const ControlMesh own = testing::control_mesh(mesh);
     SchemeOptions options;

@@ -6,31 +6,26 @@
 /// How many random cases a test draws; docs/debugging.md has the variables.
 namespace snug::testing {
 
-/// Under sanitizers, which look at what code does and not at numbers, a quarter of the usual cases, rounded up.
-[[nodiscard]] constexpr std::uint64_t fewer(std::uint64_t usual) {
-#ifdef SNUG_SANITIZED
-  return (usual + 3) / 4;
+/// Sanitizers look at what code does and not at numbers; emulators are fifty times slower than processors.
+#if defined(SNUG_SANITIZED) || defined(SNUG_EMULATED)
+inline constexpr bool slow = true;
 #else
-  return usual;
+inline constexpr bool slow = false;
 #endif
-}
+
+/// Where tests are slow, a quarter of the usual cases, rounded up.
+[[nodiscard]] constexpr std::uint64_t fewer(std::uint64_t usual) { return slow ? (usual + 3) / 4 : usual; }
 
 /// The same, and else an N-th of them where SNUG_SHARE is N, rounded up: numbers of random cases, and what these must have met.
 [[nodiscard]] inline std::uint64_t share(std::uint64_t usual) {
-  static const char* const text = fewer(4) == 4 ? std::getenv("SNUG_SHARE") : nullptr;
+  if constexpr (slow) return fewer(usual);
+  static const char* const text = std::getenv("SNUG_SHARE");
   static const std::uint64_t parts = text ? std::strtoull(text, nullptr, 10) : 1;
-  return parts > 1 ? (usual + parts - 1) / parts : fewer(usual);
+  return parts > 1 ? (usual + parts - 1) / parts : usual;
 }
 
-/// Is case `number` to be tried? All are but for sanitizers, which take every fifth.
-[[nodiscard]] constexpr bool has_turn(std::uint64_t number) {
-#ifdef SNUG_SANITIZED
-  return number % 5 == 0;
-#else
-  static_cast<void>(number);
-  return true;
-#endif
-}
+/// Is case `number` to be tried? All are, but every fifth where tests are slow.
+[[nodiscard]] constexpr bool has_turn(std::uint64_t number) { return !slow || number % 5 == 0; }
 
 /// Is this the long check, where SNUG_TIMES is set? It tries all combinations, where the usual one tries all pairs by turns.
 [[nodiscard]] inline bool long_check() { return std::getenv("SNUG_TIMES") != nullptr; }
