@@ -8,6 +8,7 @@
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle.h>
+#include <snug/search/piece.h>
 #include <snug/search/precision.h>
 #include <support/direction.h>
 #include <support/error.h>
