@@ -22,7 +22,7 @@ TEST(triangle_sides, a_face_that_is_missing_leaves_a_border) {
 }
 
 TEST(triangle_sides, a_face_the_other_way_round_is_named_with_one_beside_it) {
-  const TriangleSides sides = sides_of(Triangles{{3, 1, 4}, {0, 1, 2}, {1, 2, 3}});
+  const TriangleSides sides = sides_of(Triangles{{4, 5, 6}, {0, 1, 2}, {1, 2, 3}});
   ASSERT_TRUE(sides.same_way);
   EXPECT_EQ(*sides.same_way, (std::array<std::size_t, 2>{1, 2}));  // both run from 1 to 2
 }
