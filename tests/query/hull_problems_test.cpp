@@ -85,6 +85,21 @@ TEST(hull_problems, of_sheets_that_meet_each_other_are_found) {
   EXPECT_EQ(faults_of(surface, hulls, tolerance), std::set{HullFault::meets_other});
 }
 
+// The same where the sides of facets are longer than any double.
+TEST(hull_problems, of_sheets_that_meet_each_other_are_found_whatever_their_size) {
+  for (const double size : {1.0, 0x1p-900, 0x1.8p1023}) {
+    ControlMesh mesh;
+    mesh.points = {{-size, -size, 0}, {size, -size, 0}, {size, size, 0}, {-size, size, 0}};
+    mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
+    const Surface surface(std::move(mesh), {.scheme = Scheme::bilinear});
+    const double tolerance = 0.1 * size;
+    Hulls hulls = hull(surface, {.error = tolerance});
+    ASSERT_EQ(hulls.outcome, Outcome::complete) << size;
+    hulls.inner = hulls.outer;
+    EXPECT_EQ(faults_of(surface, hulls, tolerance), std::set{HullFault::meets_other}) << size;
+  }
+}
+
 // A part of a hull that lies on the other side of the surface is found out although the surface is around and inside.
 TEST(hull_problems, of_a_component_on_the_wrong_side_are_found) {
   const TaggedMesh mesh = both(meshes::cube(), moved(meshes::cube(), 1, {3, 0, 0}));

@@ -144,9 +144,11 @@ class Verification {
     for (std::size_t begin = 0; begin < order.size() && problems_.size() == before; begin += part_size)
       check(std::span(order).subspan(begin, std::min(part_size, order.size() - begin)));
   }
-  static Triangle triangle_of(const Hull& hull, std::size_t t) {
-    const Names& names = hull.triangles[t];
-    return {hull.positions[names[0]], hull.positions[names[1]], hull.positions[names[2]]};
+  // Scaled: sides may be longer than any double.
+  [[nodiscard]] Triangle triangle_of(const Hull& hull, std::size_t t) const {
+    const PowerOfTwo scale = model_.surface().scale();
+    const auto& [a, b, c] = hull.triangles[t];
+    return {scale.apply(hull.positions[a]), scale.apply(hull.positions[b]), scale.apply(hull.positions[c])};
   }
   [[nodiscard]] FacetSurface surface_of(const Hull& hull, std::span<const std::uint32_t> which) const {
     return {hull, which, max_kept(), model_.surface().shared_library(), monitor_};

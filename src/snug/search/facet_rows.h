@@ -14,7 +14,7 @@ namespace snug {
 class FacetRows {
  public:
   /// `corners(t)`: of triangle t. Boxes are larger than the triangles by `growth` times their longest sides.
-  /// Requires:  the marks outlive it.
+  /// Requires:  the marks, and what `corners` reads, outlive it; coordinates of at most about 2.
   template <class CornersOf>
   FacetRows(std::span<const std::uint8_t> marks, double growth, const CornersOf& corners)
       : marks_(marks), growth_(growth), corners_(corners), rows_((marks.size() + row - 1) / row) {

@@ -8,7 +8,7 @@
 
 namespace snug {
 
-/// How triangles meet along their edges.
+/// How triangles meet along their edges. One hash a side.
 struct TriangleSides {
   std::optional<std::array<std::size_t, 2>> same_way;  ///< two that run along an edge the same way
   bool border = false;                                 ///< does an edge belong to one triangle only?
