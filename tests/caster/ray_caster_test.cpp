@@ -186,22 +186,19 @@ TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
   EXPECT_GT(worst, 0);
 }
 
-// Flat patches side by side, each of size `side`.
-Surface flat_patches(std::uint32_t faces, double side) {
+// Flat patches side by side, whose boxes are as flat, from above, from below and aslant: rays at corners, sides and between.
+TEST(ray_caster, leaves_no_gap_between_flat_patches) {
+  constexpr std::uint32_t faces = 20;
   ControlMesh mesh;
-  for (std::uint32_t i = 0; i < (faces + 1) * (faces + 1); ++i)
-    mesh.points.push_back({side * (i % (faces + 1)), side * (i / (faces + 1)), 0});
+  for (std::uint32_t i = 0; i < (faces + 1) * (faces + 1); ++i) {
+    mesh.points.push_back({static_cast<double>(i % (faces + 1)), static_cast<double>(i / (faces + 1)), 0});
+  }
   for (std::uint32_t i = 0; i < faces * faces; ++i) {
     const std::uint32_t at = i / faces * (faces + 1) + i % faces;
     mesh.add_face(
         std::array{VertexId(at), VertexId(at + 1), VertexId(at + faces + 2), VertexId(at + faces + 1)});
   }
-  return Surface(std::move(mesh));
-}
-
-// Their boxes are as flat: from above, from below and aslant, rays at corners, sides and between.
-TEST(ray_caster, leaves_no_gap_between_flat_patches) {
-  const Surface surface = flat_patches(20, 1);
+  const Surface surface(std::move(mesh));
   const RayCaster caster(surface, 1e-6);
   for (const Vector3& d : {Vector3{0, 0, -1}, Vector3{0.6, 0.3, 2}, Vector3{-3, 1, -0.1}, Vector3{0, 1, 1}}) {
     for (int i = 8; i <= 72; ++i) {
